@@ -29,7 +29,7 @@ test-rest: .venv/ready-dev  ## what `make test-all` does beyond `make test`
 	$(PYTEST) --hypothesis-profile full -m "full or hypothesis"
 
 # The campaigns run for longer than a test suite may take, over random faults in virtual time.
-campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML, ten minutes of pictures, 10⁵ damaged files
+campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth, an afternoon of key presses, 10⁵ blocks of BML, ten minutes of pictures, a hundred kills, cameras with faults, hours of play, 10⁵ damaged files
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
 	$(BIN)/python -m tests.campaigns.soak --hours 24
@@ -37,6 +37,10 @@ campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum
 	$(BIN)/python -m tests.campaigns.behaviour
 	$(BIN)/python -m tests.campaigns.drawing
 	$(BIN)/python -m tests.campaigns.files --files 1e5
+	$(BIN)/python -m tests.campaigns.kills
+	$(BIN)/python -m tests.campaigns.camera_faults
+	$(BIN)/python -m tests.campaigns.long_play --hours 4
+	$(BIN)/python -m tests.campaigns.long_play --minutes 30
 
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
@@ -46,6 +50,9 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000
 	$(BIN)/python -m tests.campaigns.drawing --minutes 1
 	$(BIN)/python -m tests.campaigns.files --files 1e4
+	$(BIN)/python -m tests.campaigns.kills --kills 10
+	$(BIN)/python -m tests.campaigns.camera_faults --faults stall "huge header"
+	$(BIN)/python -m tests.campaigns.long_play --hours 0.4
 
 # pre-commit runs the four parts, each where it has something to check.
 check: check-format check-lint check-floors check-types  ## check formatting, lint, docstrings, the floors of the rooms, and types
@@ -77,6 +84,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.line
 	$(BIN)/python -m tests.bench.accuracy
 	$(BIN)/python -m tests.bench.codecs
+	$(BIN)/python -m tests.bench.recording
 	$(BIN)/python -m tests.bench.animation
 	$(BIN)/python -m tests.bench.crowd
 	$(BIN)/python -m tests.bench.mocap

@@ -5,7 +5,6 @@ neither OpenCV nor numpy.
 """
 
 import io
-import signal
 import sys
 import warnings
 from importlib import import_module
@@ -18,6 +17,7 @@ import typer.exceptions
 import typer.main
 from rich.console import Console
 
+from cubeling.app.interrupts import CTRL_C_EXIT_CODE, termination
 from cubeling.app.ui.literal_text import literal_text
 
 BAD_INPUT_EXIT_CODE = 2
@@ -154,7 +154,7 @@ def main() -> None:
     """Run a command; bad input ends in one line and exit code 2."""
     arguments = [each for each in sys.argv[1:] if each != "--debug"]  # it may stand anywhere
     debug = len(arguments) < len(sys.argv) - 1
-    end_on_termination_signals()
+    termination.watch()
     print_what_can_be_encoded()
     if not arguments or {"-h", "--help"} & set(arguments):
         load_help_drawing()
@@ -168,7 +168,7 @@ def main() -> None:
         print_message(message)
         code = BAD_INPUT_EXIT_CODE if message else 0  # a bare `cubeling` shows its help
     except (KeyboardInterrupt, typer.Abort):
-        code = 130
+        code = CTRL_C_EXIT_CODE
     except room_errors() as error:
         if debug:
             raise
@@ -179,24 +179,13 @@ def main() -> None:
             raise
         print_message(system_error(error))
         code = BAD_INPUT_EXIT_CODE
-    sys.exit(code if isinstance(code, int) else 0)
+    sys.exit(termination.exit_code(code if isinstance(code, int) else 0))
 
 
 def print_what_can_be_encoded() -> None:
     """Let a "?" stand for what the encoding of the output lacks, as that of a file on Windows."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")
-
-
-def end_on_termination_signals() -> None:
-    """Make SIGTERM and SIGHUP (a closed terminal) end a command as Ctrl-C does.
-
-    A robot without a failsafe keeps its servos on if its connection is not closed.
-    """
-    for name in ("SIGTERM", "SIGHUP"):  # Windows has no SIGHUP
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
-            signal.signal(number, signal.default_int_handler)
 
 
 ROOM_ERRORS = {

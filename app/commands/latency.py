@@ -12,6 +12,7 @@ from rich.console import Console
 
 from cubeling.app.commands.session.play import DEFAULT_CAMERA
 from cubeling.app.errors import AppError
+from cubeling.app.interrupts import CTRL_C_EXIT_CODE
 from cubeling.app.output_path import check_output
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
@@ -87,7 +88,7 @@ def latency(
     if results is not None:
         write_whole(results, json.dumps(result.as_json(), indent=1) + "\n", AppError)
     if interrupted:
-        raise typer.Exit(130)
+        raise typer.Exit(CTRL_C_EXIT_CODE)
 
 
 def _flip(session: LatencySession) -> tuple[str, bool, bool]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.spoken_line import SpokenLine
-from cubeling.app.pipeline.step import ReplayInputs, Step
+from cubeling.app.pipeline.step import ReplayInputs, RobotView, Step
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.quality_control import AUTO_QUALITY, QualityControl
 from cubeling.app.running.summary import Summary
@@ -25,6 +25,8 @@ class FrameLoop:
         self._replay: ReplayInputs | None = None
         self._hidden: Step | None = None
         self._shown_index = 0
+        self.robot = RobotView("none", 0.0, "")
+        """What the robot reported at the last frame that was shown."""
         options = session.options
         self._quality: QualityControl | None = None
         if options.quality != AUTO_QUALITY:
@@ -90,7 +92,7 @@ class FrameLoop:
         follows = self._hidden is None and step.frame.index >= self._shown_index
         self._hidden, self._shown_index = None, step.frame.index
         # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
-        view = session.robot.view()
+        self.robot = view = session.robot.view()
         session.robot.feel(step.emotion)
         if session.player is not None:
             session.player.publish(step.command, step.emotion)

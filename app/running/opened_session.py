@@ -94,6 +94,9 @@ class OpenedSession:
     recording: "SessionRecording | None" = None
     """Records the session, or None."""
 
+    recording_problem: str = ""
+    """Why a recording stopped before its end, in one line; "" if none did."""
+
     recorded: list[Path] = field(default_factory=list)
     """The recordings that have been completed before the end of the session."""
 
@@ -212,10 +215,24 @@ class OpenedSession:
         )
         self.playground.fixed = True
 
+    def check_recording(self) -> bool:
+        """End the recording if the disk has failed, and return whether it has just done so.
+
+        Play goes on. Raises AppError where the frames are processed only to be written.
+        """
+        if self.recording is None or self.recording.problem is None:
+            return False
+        self.end_recording()
+        if not self.source.live:
+            raise AppError(self.recording_problem)
+        self.screen.notify(self.recording_problem)
+        return True
+
     def end_recording(self) -> None:
         """Complete the recording, if there is one."""
         if self.recording is not None:
             self.recording.close()
+            self.recording_problem = self.recording.problem or self.recording_problem
             self.recorded.append(self.recording.path)
             self.recording = None
             self.playground.fixed = self.options.keeps_scenario or not self.options.windowed

@@ -7,7 +7,9 @@ from cubeling.app.ui.output_formats import OUTPUT_SUFFIXES
 
 
 def check_part(options: SessionOptions) -> None:
-    """Refuse a part of a recording that is empty, and a loop that nobody could end."""
+    """Refuse a part of a recording that is empty, and what nobody could end."""
+    if not options.patience_s >= 0.0:  # also what is no number
+        raise AppError(f"--patience is a time of 0 s or more, not {options.patience_s:g}")
     if options.loop and not options.windowed:
         raise AppError("--loop needs a window: a file would never end")
     if options.start_s < 0.0:

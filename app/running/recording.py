@@ -4,7 +4,6 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Step
@@ -98,8 +97,11 @@ class SessionRecording(Closeable):
             self.event(f"placed {step.controls.top_face}", now)
         for gesture in step.controls.gestures:
             self.event(gesture, now)
-        if self._recorder.problem is not None:
-            raise AppError(self._recorder.problem)
+
+    @property
+    def problem(self) -> str | None:
+        """Why recording stopped before its end, in one line, or None."""
+        return self._recorder.problem
 
     def follow_wire(self, wire: WireTap, since: float) -> None:
         """Record the bytes of another robot from a timestamp on [s]."""

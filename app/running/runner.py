@@ -1,14 +1,13 @@
 """The loop of a session: frames in, pictures and emotions out, all of it recorded if asked for."""
 
-import signal
-import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
+from cubeling.app.interrupts import defer_interrupts
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.clock import Pace
 from cubeling.app.running.frame_loop import FrameLoop
+from cubeling.app.running.gap_watch import GapWatch, Say
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.playback.player_controls import PlayerControls
 from cubeling.app.running.playback.transport import Transport
@@ -26,12 +25,10 @@ IDLE_INTERVAL_S = 0.02
 PREVIEW_INTERVAL_S = 0.25
 """While it seeks, a picture on the way is shown so often."""
 
-CAMERA_LOST = "camera lost"
-CAMERA_BACK = "camera back"
-"""The events of a recording between which there are no pictures."""
 
-
-def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
+def run(
+    session: OpenedSession, progress: Progress | None = None, say: Say = lambda line: None
+) -> Summary:
     """Run a session to its end, until the player closes the window, or until Ctrl-C.
 
     Parameters
@@ -40,6 +37,8 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
         From `open_session`.
     progress
         Called after every frame with its step.
+    say
+        Called with a line when camera, robot or recording are lost, and when they are back.
 
     Returns
     -------
@@ -53,7 +52,7 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
         The source, the robot or the disk failed; what was recorded until then is complete.
     """
     summary = Summary(session.playground.scenario.name)
-    runner = _Runner(session, summary, progress)
+    runner = _Runner(session, summary, progress, say)
     try:
         runner.run()
         # A lost robot does not end the session and its link keeps retrying: report it at the end.
@@ -75,12 +74,14 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
 class _Runner:
     """Runs a session: what the player asks for, then the next frame, again and again."""
 
-    def __init__(self, session: OpenedSession, summary: Summary, progress: Progress | None) -> None:
-        self._session, self._summary, self._progress = session, summary, progress
+    def __init__(
+        self, session: OpenedSession, summary: Summary, progress: Progress | None, say: Say
+    ) -> None:
+        self._session, self._summary, self._progress, self._say = session, summary, progress, say
         self._transport = Transport(session)
         self._controls = PlayerControls(session, self._transport)
         self._loop = FrameLoop(session, summary)
-        self._gaps = _CameraGaps(session, summary)
+        self._gaps = GapWatch(session, summary, say)
         self._times = session.monitor.times
         self._start: float | None = None
         self._shown_at = 0.0
@@ -100,6 +101,7 @@ class _Runner:
                 return
 
     def close(self) -> None:
+        self._gaps.close()
         self._controls.close()
 
     def _advance(self) -> bool:
@@ -107,12 +109,12 @@ class _Runner:
         found = self._read()
         self._times.lap("waiting" if self._session.source.live else "capture")
         if isinstance(found, Frame):
-            self._gaps.end(found)
+            self._gaps.camera_back(found.timestamp)
             self._process(found)
         elif isinstance(found, Health):
             message = notice(found)
             if message is not None:
-                self._gaps.begin()
+                self._gaps.camera_lost(found.problem)
             self._session.screen.wait(message)
         else:
             self._loop.show_skipped()
@@ -156,6 +158,9 @@ class _Runner:
             with defer_interrupts():
                 step = loop.step(frame)
             self._shown_at = time.monotonic()
+            self._gaps.watch_robot(loop.robot, frame.timestamp)
+            if session.check_recording():
+                self._say(session.recording_problem)
         self._transport.save_state(by_player)
         if self._progress is not None:
             self._progress(step)
@@ -174,59 +179,3 @@ class _Runner:
         if self._session.screen.attended and now - self._shown_at >= PREVIEW_INTERVAL_S:
             self._loop.preview()
             self._shown_at = time.monotonic()
-
-
-class _CameraGaps:
-    """Notes when the camera was lost and when it came back, in the summary and the recording."""
-
-    def __init__(self, session: OpenedSession, summary: Summary) -> None:
-        self._session, self._summary = session, summary
-        self._start: float | None = None
-
-    def begin(self) -> None:
-        """Begin a gap at the last frame; further calls within the gap do nothing."""
-        if self._start is None:
-            self._start = self._summary.last
-            self._record(CAMERA_LOST, self._start)
-
-    def end(self, frame: Frame) -> None:
-        """End the gap, if there is one, at this frame."""
-        if self._start is not None:
-            self._summary.gaps.append((self._start, frame.timestamp - self._start))
-            self._start = None
-            self._record(CAMERA_BACK, frame.timestamp)
-
-    def _record(self, event: str, timestamp: float) -> None:
-        if self._session.recording is not None:
-            self._session.recording.event(event, timestamp)
-
-
-SIGNALS = [
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
-]
-"""The signals that end a command; Windows has no SIGHUP."""
-
-
-@contextmanager
-def defer_interrupts() -> Iterator[None]:
-    """Let Ctrl-C and a termination signal wait for the end of the block.
-
-    A frame that is half encoded or half recorded would spoil the file. Signals reach only the main
-    thread.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    waiting: list[int] = []
-    handlers = {
-        number: handler for number in SIGNALS if callable(handler := signal.getsignal(number))
-    }
-    for number in handlers:
-        signal.signal(number, lambda number, frame: waiting.append(number))
-    try:
-        yield
-    finally:
-        for number, handler in handlers.items():
-            signal.signal(number, handler)
-    if waiting:
-        signal.raise_signal(waiting[0])

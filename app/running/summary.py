@@ -3,6 +3,7 @@
 import statistics
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import Generic, TypeVar
 
 from rich.console import Group, RenderableType
 from rich.panel import Panel
@@ -11,9 +12,12 @@ from rich.text import Text
 
 from cubeling.app.counted import quantity
 from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.running.gaps import Gap, gaps_line
 from cubeling.app.ui.literal_text import literal_text
 from cubeling.robot import LogLine, RobotError
 from cubeling.tracking import Health, TrackingError
+
+T = TypeVar("T")
 
 CURVE_BLOCKS = "▁▂▃▄▅▆▇█"
 """The heights of a curve, from −1 to 1."""
@@ -29,6 +33,33 @@ MAX_LOG_LINES = 3
 
 MAX_TIMELINE_ENTRIES = 12
 """Entries of a timeline before the rest is summed up."""
+
+MAX_SAMPLES = 4096
+"""Values of a session that are kept for its figures: more than two minutes, all of a short one."""
+
+
+class EvenSamples(Generic[T]):
+    """Values of a session of any length, as every first, second, fourth … of them is kept.
+
+    >>> kept = EvenSamples(most=4)
+    >>> for value in range(10):
+    ...     kept.add(value)
+    >>> kept.values
+    [0, 4, 8]
+    """
+
+    def __init__(self, most: int = MAX_SAMPLES) -> None:
+        self.values: list[T] = []
+        """What is kept, at most `most`."""
+        self._most, self._step, self._count = most, 1, 0
+
+    def add(self, value: T) -> None:
+        """Add the next value."""
+        if self._count % self._step == 0:
+            self.values.append(value)
+        if len(self.values) > self._most:
+            self.values, self._step = self.values[::2], 2 * self._step
+        self._count += 1
 
 
 @dataclass
@@ -53,17 +84,20 @@ class Summary:
     states: list[tuple[float, str]] = field(default_factory=list)
     """When each state of the character began, in the same way, and its name."""
 
-    moods: list[tuple[float, float, str]] = field(default_factory=list)
-    """When, in the same way, the valence that the robot reports, and its label."""
+    labels: list[tuple[float, str]] = field(default_factory=list)
+    """When the label of the robot's mood changed, in the same way, and the new label."""
 
-    frame_seconds: list[float] = field(default_factory=list)
-    """Processing time of each frame, from the camera's picture to the finished one [s]."""
+    valences: EvenSamples[float] = field(default_factory=EvenSamples)
+    """The valence that the robot reports, −1…1."""
+
+    frame_seconds: EvenSamples[float] = field(default_factory=EvenSamples)
+    """Processing times of frames, from the camera's picture to the finished one [s]."""
 
     lost: RobotError | TrackingError | None = None
     """Why the robot could not be reached at the end, or why the camera stopped; None if neither."""
 
-    gaps: list[tuple[float, float]] = field(default_factory=list)
-    """When the camera was lost [s, its timestamps], and how long until its next frame [s]."""
+    gaps: list[Gap] = field(default_factory=list)
+    """When the camera or the robot was missing, in the order of their ends."""
 
     robot_log: tuple[LogLine, ...] = ()
     """The last lines of the robot's log."""
@@ -98,8 +132,10 @@ class Summary:
             self.scenarios.append((now, step.scenario))
         if not self.states or self.states[-1][1] != step.posed.state:
             self.states.append((now, step.posed.state))
-        self.moods.append((now, robot.mood, robot.label))
-        self.frame_seconds.append(seconds)
+        if not self.labels or self.labels[-1][1] != robot.label:
+            self.labels.append((now, robot.label))
+        self.valences.add(robot.mood)
+        self.frame_seconds.add(seconds)
 
     def check(self) -> None:
         """Raise what went wrong with robot or camera; call it once everything is closed."""
@@ -111,20 +147,12 @@ class Summary:
         """Share of the frames in which the cube was found, 0…1."""
         return self.tracked_frames / self.frames if self.frames else 0.0
 
-    def labels(self) -> list[tuple[float, str]]:
-        """Return when the label of the robot's mood changed [s], and the new label."""
-        changes: list[tuple[float, str]] = []
-        for time, _, label in self.moods:
-            if not changes or changes[-1][1] != label:
-                changes.append((time, label))
-        return changes
-
     def frame_ms(self) -> tuple[float, float]:
         """Return the median and the 95th percentile of the processing time [ms]."""
-        if len(self.frame_seconds) < 2:
-            return (1000 * sum(self.frame_seconds),) * 2
-        cuts = statistics.quantiles(self.frame_seconds, n=20)
-        return 1000 * statistics.median(self.frame_seconds), 1000 * cuts[18]
+        taken = self.frame_seconds.values
+        if len(taken) < 2:
+            return (1000 * sum(taken),) * 2
+        return 1000 * statistics.median(taken), 1000 * statistics.quantiles(taken, n=20)[18]
 
     def __rich__(self) -> RenderableType:
         table = Table.grid(padding=(0, 2))
@@ -143,7 +171,7 @@ class Summary:
         if self.hopped:
             make = "[cyan]cubeling character locomotion[/] gives it a gait"
             table.add_row("", f"it hopped, as it has no clips to walk with: {make}")
-        table.add_row("robot felt", literal_text(_timeline(self.labels(), duration)))
+        table.add_row("robot felt", literal_text(_timeline(self.labels, duration)))
         table.add_row(
             "", Text(self._curve(), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")
         )
@@ -155,10 +183,9 @@ class Summary:
         )
         if self.camera is not None:
             table.add_row("camera", camera_line(self.camera))
-        if self.gaps:
-            lost = sum(seconds for _, seconds in self.gaps)
-            count = "once" if len(self.gaps) == 1 else f"{len(self.gaps)} times"
-            table.add_row("camera lost", f"{count}, {lost:.1f} s in all")
+        for part in ("camera", "robot"):
+            if gaps := [gap for gap in self.gaps if gap.part == part]:
+                table.add_row(f"{part} lost", gaps_line(gaps))
         if self.lens is not None:
             table.add_row("lens", self.lens)
         names = dict.fromkeys([self.scenario, *(name for _, name in self.scenarios)])
@@ -167,10 +194,11 @@ class Summary:
 
     def _curve(self) -> str:
         """Return the valence over time as a line of blocks."""
-        if not self.moods:
+        valences = self.valences.values
+        if not valences:
             return ""
-        last = len(self.moods) - 1
-        picks = (self.moods[round(i * last / (CURVE_WIDTH - 1))][1] for i in range(CURVE_WIDTH))
+        last = len(valences) - 1
+        picks = (valences[round(i * last / (CURVE_WIDTH - 1))] for i in range(CURVE_WIDTH))
         heights = (int((min(1.0, max(-1.0, valence)) + 1) * 3.999) for valence in picks)
         return "".join(CURVE_BLOCKS[min(7, height)] for height in heights)
 
@@ -182,10 +210,11 @@ def camera_line(health: Health) -> str:
     '30.0 pictures/s, 41 ms old (since arrival), 2 left out for newer ones, none waited'
     """
     clock = "since exposure" if health.stamped_by == "driver" else "since arrival"
+    unusable = f", {health.unusable} broken or of another size" if health.unusable else ""
     waited = f"at most {health.max_queue} waited" if health.max_queue else "none waited"
     return (
         f"{health.rate:.1f} pictures/s, {1000 * health.latency:.0f} ms old ({clock}), "
-        f"{health.dropped} left out for newer ones, {waited}"
+        f"{health.dropped} left out for newer ones{unusable}, {waited}"
     )
 
 

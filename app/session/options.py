@@ -119,6 +119,9 @@ class SessionOptions:
     stage: str = "camera"
     """The channel from which on a replay computes: one of `START_STAGES`."""
 
+    patience_s: float = 30.0
+    """How long the session goes on without a picture of a camera that was lost [s]."""
+
     start_s: float = 0.0
     """Where to start in a recording, from its first frame [s]."""
 

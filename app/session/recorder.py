@@ -1,9 +1,12 @@
 """Recording a session: append-only, on a thread of its own, so that no frame waits for the disk."""
 
 import json
+import os
 import queue
 import threading
+import time
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -39,10 +42,14 @@ from cubeling.robot import Closeable
 from cubeling.tracking import Frame, Intrinsics, nanoseconds_of
 
 CHUNK_BYTES = 128 * 1024
-"""Size at which a chunk is written to the disk [B]: well under a second of any session."""
+"""Size at which a chunk is written at the latest [B]: about that of one JPEG picture."""
 
-MAX_QUEUED_WRITES = 256
-"""Writes that may wait for a slow disk; with more, recording stops instead of delaying frames."""
+CHUNK_S = 0.5
+"""Time after which a chunk is written at the latest [s], however small it is: what a kill loses."""
+
+MAX_QUEUED_WRITES = 2048
+"""Writes that may wait for a slow disk; with more, recording stops instead of delaying frames. They
+are some seconds of a session, as a disk may take that long to sync."""
 
 JSON_SCHEMAS = {
     **{topic: (f"cubeling.{kind.__name__}", schema(kind)) for topic, kind in CHANNEL_TYPES.items()},
@@ -63,7 +70,8 @@ class Recorder(Closeable):
     """Records one session to one .mcap file.
 
     Open it before the first frame, `write` every step, and `close` it at the end; a second `close`
-    does nothing. If the program is killed, all but the last half second can be read.
+    does nothing. A chunk ends every `CHUNK_S`, and the disk is told to keep it (`fsync`): if the
+    program is killed, all but the last second can be read.
 
     Parameters
     ----------
@@ -91,11 +99,11 @@ class Recorder(Closeable):
         self._channels: dict[str, int] = {}
         try:
             self._file = path.open("wb")
+            self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
+            self._start()  # here, so that there is no moment at which the file is no session
         except OSError as error:
             raise AppError(f"cannot record to '{path}': {error.strerror}") from error
-        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
-        self._submit(self._start)
         self._thread.start()
         self._closed = False
 
@@ -130,6 +138,8 @@ class Recorder(Closeable):
             self._json(INPUTS_TOPIC, partial(encode, came_in), now)
         for topic, message in step.messages().items():
             self._json(topic, partial(encode, message), now)
+        if self._steps == 1:  # so that a session that is killed at once has a picture
+            self._submit(self._end_chunk)
 
     def wire(self, direction: str, data: bytes, timestamp: float) -> None:
         """Record bytes that were sent to the robot ("tx") or received from it ("rx")."""
@@ -142,8 +152,9 @@ class Recorder(Closeable):
         self._json("/events", lambda: line, timestamp)
 
     def flush(self) -> None:
-        """Wait until everything is written, except for the last chunk."""
+        """Wait until everything is written."""
         done = threading.Event()
+        self._submit(self._end_chunk)
         self._submit(done.set)
         while self.problem is None and not done.wait(0.1):
             pass
@@ -155,19 +166,45 @@ class Recorder(Closeable):
         self._closed = True
         self._submit(None)
         self._thread.join(timeout=10.0)
-        self._file.close()
+        with suppress(OSError):  # a full disk, which `problem` tells
+            self._file.close()
         if self._steps == 0:
             self.path.unlink(missing_ok=True)
 
     def _run(self) -> None:
+        chunk_end: float | None = None
         try:
-            while (write := self._queue.get()) is not None:
+            while True:
+                try:
+                    wait = None if chunk_end is None else max(0.0, chunk_end - time.monotonic())
+                    write = self._queue.get(timeout=wait)
+                except queue.Empty:  # nothing more came, as in a pause
+                    self._end_chunk()
+                    chunk_end = None
+                    continue
+                if write is None:
+                    break
                 write()
                 self._file.flush()  # write a full chunk now, not with the next one
+                if chunk_end is None:
+                    chunk_end = time.monotonic() + CHUNK_S
+                elif time.monotonic() >= chunk_end:
+                    self._end_chunk()
+                    chunk_end = None
             self._writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
+            self._sync()
         except (OSError, ValueError) as error:
             reason = (error.strerror if isinstance(error, OSError) else None) or error
             self.problem = f"recording to '{self.path}' stopped: {reason}"
+
+    def _end_chunk(self) -> None:
+        """Write the chunk in progress, and have it kept whatever happens to the program."""
+        self._writer.flush()  # type: ignore[no-untyped-call]  # mcap has no types here
+        self._sync()
+
+    def _sync(self) -> None:
+        self._file.flush()
+        os.fsync(self._file.fileno())
 
     def _submit(self, write: Callable[[], None] | None) -> None:
         if self.problem is not None:
@@ -178,10 +215,11 @@ class Recorder(Closeable):
             self.problem = f"recording to '{self.path}' stopped: the disk is too slow"
 
     def _start(self) -> None:
+        """Write what the session says of itself."""
         self._writer.start(profile="", library="cubeling")
-        self._writer.add_metadata(
-            SESSION_RECORD, {FORMAT_KEY: f"{SESSION_FORMAT}", **self._metadata}
-        )
+        metadata = {FORMAT_KEY: f"{SESSION_FORMAT}", **self._metadata}
+        self._writer.add_metadata(SESSION_RECORD, metadata)
+        self._file.flush()
 
     def _frame(self, frame: Frame) -> None:
         if frame.encoded is None:

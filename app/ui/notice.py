@@ -24,6 +24,10 @@ def notice(health: Health) -> Notice | None:
     """
     if health.state in ("running", "closed"):
         return None
+    if health.images_unusable:
+        return Notice(
+            "The camera's pictures cannot be used", "They are broken, or have another size."
+        )
     if health.name.startswith("http"):
         return Notice("No picture from the phone", "Is its camera app open, and in this network?")
     if health.frozen:

@@ -65,9 +65,9 @@ class LiveFrames(FrameSource, Protocol):
     """A live source that reports its health, for callers that must not block: a window, a robot.
 
     `wait` always returns within its timeout. `health` reports within a second that no new images
-    arrive: "lost" (unplugged, silent, undecodable), "frozen" (identical images) or, once the device
-    is open again, "recovering". The state lasts until a new image arrives. Timestamps keep
-    increasing across a gap. `wait` and iteration may be mixed, in one thread.
+    arrive: "lost" (unplugged, silent, broken images or of another size), "frozen" (identical ones)
+    or, once the device is open again, "recovering". The state lasts until a new image arrives.
+    Timestamps keep increasing across a gap. `wait` and iteration may be mixed, in one thread.
     """
 
     def wait(self, timeout: float, patience: float | None = None) -> Frame | None:
@@ -83,7 +83,7 @@ class LiveFrames(FrameSource, Protocol):
         Raises
         ------
         TrackingError
-            It was lost for longer than `patience`, or the size of its images changed.
+            It was lost for longer than `patience`.
         """
         ...
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from cubeling.tracking.geometry.arrays import Image
-from cubeling.tracking.sources.device import DeviceSetting
+from cubeling.tracking.sources.device import DeviceSetting, is_decodable
 from cubeling.tracking.sources.video_device import VideoCapture
 
 SETTLING_IMAGES = 30
@@ -163,6 +163,8 @@ class ControlLock:
 def brightness(image: Image | bytes) -> float:
     """Return the mean grey level, from an eighth of the image's size."""
     if isinstance(image, bytes):
+        if not is_decodable(image):
+            return 0.0
         small = cv2.imdecode(np.frombuffer(image, np.uint8), cv2.IMREAD_REDUCED_GRAYSCALE_8)
         return 0.0 if small is None else float(small.mean())
     return float(image[::8, ::8].mean())

@@ -1,5 +1,6 @@
 """A live device that delivers images, and the health of the source that reads it."""
 
+import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, Protocol, TypeAlias
@@ -11,6 +12,9 @@ from cubeling.tracking.geometry.arrays import Image
 
 Clock: TypeAlias = Callable[[], float]
 """Returns the time [s]."""
+
+MAX_IMAGE_PX = 2**26
+"""Most pixels of an image that is decoded: twice those of an 8K camera."""
 
 SourceState: TypeAlias = Literal["running", "lost", "frozen", "recovering", "closed"]
 """Running; disconnected or silent; repeating the same image; open again, but no image yet."""
@@ -53,6 +57,9 @@ class Health:
     dropped: int = 0
     """Number of images that were replaced by newer ones before they were requested."""
 
+    unusable: int = 0
+    """Number of images that were left out: broken, or of another size than the first one."""
+
     gaps: int = 0
     """How often the source was lost or frozen."""
 
@@ -77,6 +84,9 @@ class Health:
 
     frozen: bool = False
     """Whether the current loss is, or before reopening was, a frozen image."""
+
+    images_unusable: bool = False
+    """Whether the current loss is of images that arrive and cannot be used."""
 
     @property
     def running(self) -> bool:
@@ -130,12 +140,38 @@ class Device(Protocol):
         ...
 
 
-def decode_jpeg(data: bytes) -> Image | None:
-    """Decode a JPEG to BGR; None if the data is not a complete JPEG.
+def jpeg_size(data: bytes) -> tuple[int, int] | None:
+    """Return the width and height in a JPEG's header [px]; None if the data has no such header.
 
-    A truncated image is refused before libjpeg, which would fill it with grey and print a warning.
+    They are in the segment that starts a frame (ITU-T T.81, section B.2.2). EXIF data before it may
+    hold a small JPEG of its own, which is skipped with them.
     """
-    if not data.startswith(b"\xff\xd8") or b"\xff\xd9" not in data:
+    position = 2
+    while data[position : position + 1] == b"\xff" and position + 9 <= len(data):
+        marker = data[position + 1]
+        if marker == 0xFF:  # any number of them may precede a marker
+            position += 1
+        elif 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
+            height, width = struct.unpack_from(">HH", data, position + 5)
+            return width, height
+        else:
+            position += 2 + int.from_bytes(data[position + 2 : position + 4])
+    return None
+
+
+def is_decodable(data: bytes) -> bool:
+    """Return whether data is a complete JPEG of at most `MAX_IMAGE_PX`, by its header and end.
+
+    A truncated image is refused before libjpeg, which would fill it with grey and print a warning;
+    and one whose header claims too much before OpenCV, which would raise or fill the memory.
+    """
+    size = jpeg_size(data) if data.startswith(b"\xff\xd8") and b"\xff\xd9" in data else None
+    return size is not None and 0 < size[0] * size[1] <= MAX_IMAGE_PX
+
+
+def decode_jpeg(data: bytes) -> Image | None:
+    """Decode a JPEG to BGR; None if it cannot be decoded, see `is_decodable`."""
+    if not is_decodable(data):
         return None
     image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
     return None if image is None else np.asarray(image, np.uint8)

@@ -1,11 +1,13 @@
 """A source that returns the newest image of a device that may be lost and come back."""
 
+import math
 import statistics
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
 
 from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.geometry.arrays import Image
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.sources.base import FrameSource, Timeline
 from cubeling.tracking.sources.capture import (
@@ -17,12 +19,14 @@ from cubeling.tracking.sources.capture import (
 )
 from cubeling.tracking.sources.capture_timing import RECENT_IMAGES
 from cubeling.tracking.sources.device import (
+    MAX_IMAGE_PX,
     CapturedImage,
     Clock,
     Device,
     Health,
     SourceState,
     decode_jpeg,
+    jpeg_size,
 )
 
 MAX_ITERATION_GAP_S = 30.0
@@ -38,7 +42,8 @@ class LiveSource(FrameSource):
     Opening waits for the first frame. `connect` opens the device, in the capture thread, so a
     driver that blocks does not block the caller; it is called again after each loss:
     `base.LiveFrames` describes what the caller sees. With `detect_frozen`, identical images for
-    `SILENCE_S` count as a loss. Messages give the source's `name`: "camera 0".
+    `SILENCE_S` count as a loss, and so do images that cannot be used, as they are broken or have
+    another size than the first one. Messages give the source's `name`: "camera 0".
 
     Raises
     ------
@@ -63,8 +68,10 @@ class LiveSource(FrameSource):
         self._timeline = Timeline()
         self._count = 0
         self._closed = False
-        self._undecodable_since: float | None = None
-        self._undecodable_text = f"{name} sends images that cannot be decoded"
+        self._first_size: tuple[int, int] | None = None
+        self._unusable = 0
+        self._unusable_since: float | None = None
+        self._unusable_text = ""
         self._latencies: deque[float] = deque(maxlen=RECENT_IMAGES)
         self._capture = CaptureThread(connect, name, clock, detect_frozen)
         try:
@@ -72,8 +79,7 @@ class LiveSource(FrameSource):
         except BaseException:
             self.close()
             raise
-        height, width = self._first.image.shape[:2]
-        self.size = (width, height)
+        self.size = self._size_of(self._first.image)
         self.rate = self._capture.rate
 
     def __iter__(self) -> Iterator[Frame]:
@@ -88,17 +94,10 @@ class LiveSource(FrameSource):
         if first is not None and self._clock() - first.timestamp < MAX_FIRST_AGE_S:
             return first
         frame = self._next(timeout if first is None else 0.0) or first
-        if frame is None:
-            if patience is not None:
-                state, since, problem = self._state()
-                if state not in ("running", "closed") and self._clock() - since >= patience:
-                    raise TrackingError(problem)
-        elif frame.image.shape[1::-1] != self.size:
-            width, height = frame.image.shape[1::-1]
-            raise TrackingError(
-                f"the image of {self._name} changed from {self.size[0]}x{self.size[1]} to "
-                f"{width}x{height}: do not rotate or reconfigure the camera while it is in use"
-            )
+        if frame is None and patience is not None:
+            state, since, problem = self._state()
+            if state not in ("running", "closed") and self._clock() - since >= patience:
+                raise TrackingError(problem)
         return frame
 
     @property
@@ -113,6 +112,7 @@ class LiveSource(FrameSource):
             problem=problem,
             frames=self._count,
             dropped=capture.dropped,
+            unusable=self._unusable,
             gaps=capture.gaps,
             rate=capture.gauge.rate,
             latency=statistics.median(self._latencies) if self._latencies else 0.0,
@@ -121,6 +121,7 @@ class LiveSource(FrameSource):
             stamped_by="driver" if capture.exposure_clock.by_driver else "arrival",
             settings=capture.settings,
             frozen=capture.frozen and state in ("frozen", "recovering"),
+            images_unusable=state == "lost" and problem == self._unusable_text,
         )
 
     def close(self) -> None:
@@ -137,9 +138,9 @@ class LiveSource(FrameSource):
             now, capture = self._clock(), self._capture
             if capture.failed_to_open:
                 raise TrackingError(capture.problem)
-            undecodable_since = self._undecodable_since
-            if undecodable_since is not None and now - undecodable_since >= FIRST_IMAGE_TIMEOUT_S:
-                raise TrackingError(self._undecodable_text)
+            since = self._unusable_since
+            if since is not None and now - since >= FIRST_IMAGE_TIMEOUT_S:
+                raise TrackingError(self._unusable_text)
             if capture.delivered:
                 continue
             waited = now - capture.last_arrival
@@ -157,25 +158,61 @@ class LiveSource(FrameSource):
             if frame is not None:
                 return frame
             now = self._clock()
-            if self._undecodable_since is not None and now - self._undecodable_since >= SILENCE_S:
-                self._capture.reject(self._undecodable_text)
+            if self._unusable_since is not None and now - self._unusable_since >= SILENCE_S:
+                self._capture.reject(self._unusable_text)
             if now - began >= timeout:
                 return None
         return None
 
     def _decode(self, captured: CapturedImage) -> Frame | None:
         jpeg = captured.data if isinstance(captured.data, bytes) else None
-        image = captured.data if jpeg is None else decode_jpeg(jpeg)
+        image = self._pixels(captured.data)
         now = self._clock()
-        if image is None or isinstance(image, bytes):
-            if self._undecodable_since is None:
-                self._undecodable_since = now
+        if image is None:
+            self._unusable += 1
+            if self._unusable_since is None:
+                self._unusable_since = now
             return None
-        self._undecodable_since = None
+        self._unusable_since = None
+        self._first_size = self._size_of(image)
         self._latencies.append(now - captured.taken)
         stamp, index = self._timeline.stamp(captured.taken), self._count
         self._count += 1
         return Frame(image, stamp, index, jpeg, "jpeg" if jpeg else "")
+
+    def _pixels(self, data: Image | bytes) -> Image | None:
+        """Return an image as pixels; None, and why in `_unusable_text`, if it cannot be used."""
+        expected = self._first_size
+        if isinstance(data, bytes):
+            found = jpeg_size(data)
+            # What EXIF data turn upright has the same number of pixels in its header. Any other
+            # number is not decoded at all.
+            other = expected and found and math.prod(found) != math.prod(expected)
+            image = None if other else decode_jpeg(data)
+        else:
+            found, image = None, data
+        if image is not None:
+            found = self._size_of(image)
+            if expected in (None, found):
+                return image
+        if found is not None and math.prod(found) > MAX_IMAGE_PX:
+            self._unusable_text = (
+                f"{self._name} sends images that claim {found[0]}x{found[1]} pixels"
+            )
+        elif expected is None or found in (None, expected):
+            self._unusable_text = f"{self._name} sends images that cannot be decoded"
+        else:
+            sizes = " to ".join(f"{width}x{height}" for width, height in (expected, found))
+            self._unusable_text = (
+                f"the image of {self._name} changed from {sizes}: "
+                "do not rotate or reconfigure the camera while it is in use"
+            )
+        return None
+
+    @staticmethod
+    def _size_of(image: Image) -> tuple[int, int]:
+        height, width = image.shape[:2]
+        return width, height
 
     def _state(self) -> tuple[SourceState, float, str]:
         """Return the state, since when it lasts, and the problem.
@@ -185,8 +222,8 @@ class LiveSource(FrameSource):
         capture, now = self._capture, self._clock()
         if self._closed:
             return "closed", capture.since, ""
-        if self._undecodable_since is not None and now - self._undecodable_since >= SILENCE_S:
-            return "lost", self._undecodable_since, self._undecodable_text
+        if self._unusable_since is not None and now - self._unusable_since >= SILENCE_S:
+            return "lost", self._unusable_since, self._unusable_text
         if capture.state == "running":
             silence = now - capture.last_arrival
             if silence >= SILENCE_S:

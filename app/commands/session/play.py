@@ -136,6 +136,13 @@ IntrinsicsOption = Annotated[
         help="File of the calibrated camera (ROS camera_info YAML); without it, a lens is guessed."
     ),
 ]
+PatienceOption = Annotated[
+    float,
+    typer.Option(
+        metavar="<s>",
+        help="How long to go on without a camera that stalls or is lost, until it is back.",
+    ),
+]
 RobotOption = Annotated[
     str,
     typer.Option(
@@ -193,6 +200,7 @@ def play(
     motions: MotionsOption = None,
     idle: IdleOption = None,
     intrinsics: IntrinsicsOption = None,
+    patience: PatienceOption = 30.0,
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
     record: RecordOption = None,
@@ -247,6 +255,7 @@ def play(
         motions=tuple(motions or ()),
         idle=idle,
         intrinsics=intrinsics,
+        patience_s=patience,
         speed_map=speed_map,
         turns=turns,
         personality=personality,

@@ -71,6 +71,8 @@ def play_session(
         if options.output is not None:
             report_output(options.output, summary, console)
     summary.check()
+    if session.recording_problem:
+        raise AppError(session.recording_problem)
 
 
 @contextmanager
@@ -137,7 +139,7 @@ def run_with_progress(session: OpenedSession, console: Console, title: str) -> S
             hop_line(step)
             sound_line()
 
-        summary = run(session, progress)
+        summary = run(session, progress, lambda line: typer.echo(line, err=True))
     if summary.frames == 0:
         if summary.interrupted:
             raise KeyboardInterrupt

@@ -10,12 +10,6 @@ from cubeling.tracking import Frame, Health, LiveFrames, StoredFrames, Timeline,
 SCREEN_UPDATE_INTERVAL_S = 0.05
 """While no frame comes, the screen is updated at least this often."""
 
-ATTENDED_RECONNECT_TIMEOUT_S = 30.0
-"""How long a camera may be lost while a user at the window can plug it in again."""
-
-UNATTENDED_RECONNECT_TIMEOUT_S = 3.0
-"""How long it may be lost without a window: long enough for a network's short stalls."""
-
 
 class FrameFeed:
     """Returns the frames of the session's present source; live ones without gaps by pauses."""
@@ -62,9 +56,7 @@ class FrameFeed:
     def _next_live(self, source: LiveFrames) -> Frame | Health | None:
         if source.health.state == "closed":
             return None
-        attended = self._session.options.windowed
-        patience = ATTENDED_RECONNECT_TIMEOUT_S if attended else UNATTENDED_RECONNECT_TIMEOUT_S
-        frame = source.wait(SCREEN_UPDATE_INTERVAL_S, patience)
+        frame = source.wait(SCREEN_UPDATE_INTERVAL_S, self._session.options.patience_s)
         if frame is None:
             return source.health
         if self._close_gap and self.last is not None:

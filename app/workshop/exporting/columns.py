@@ -186,7 +186,7 @@ EXPORT_TABLES = (
         "events",
         "/events",
         (Column("event", "", "placed FACE, shaken, start over, cube opened or closed, camera lost, "
-                "camera back", lambda event: event.get("event")),),
+                "camera back, robot lost, robot back", lambda event: event.get("event")),),
     ),
 )  # fmt: skip
 """The tables besides `sessions`."""

@@ -1,9 +1,5 @@
 """`cubeling robot simulate`: any robot with any faults; a wrong option is one line."""
 
-import signal
-import subprocess
-import sys
-
 import pytest
 
 from cubeling.robot.simulators import SIMULATORS
@@ -44,20 +40,3 @@ def test_the_help_explains_every_fault(cubeling):
     _, out, _ = cubeling("robot", "simulate", "--help")
     for option in (*OPTIONS, "seed"):
         assert f"{option}=" in out
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
-def test_sighup_and_sigterm_end_it_as_ctrl_c_does():
-    for number in (signal.SIGHUP, signal.SIGTERM):
-        # As in a terminal: what nohup starts begins with SIGHUP ignored, and so do the tests.
-        program = f"import signal; signal.signal({number:d}, signal.SIG_DFL)"
-        program += "; from cubeling.app.cli import main; main()"
-        command = [sys.executable, "-c", program, "robot", "simulate", "--seconds", "60"]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
-            assert child.stdout is not None
-            try:
-                assert "A robot listens" in child.stdout.readline()
-                child.send_signal(number)
-                assert child.wait(20) in (0, 130)  # as Ctrl-C does; killed, it would be < 0
-            finally:
-                child.kill()

@@ -1,5 +1,7 @@
 """Sessions on disk: exact, append-only, and readable after damage."""
 
+import os
+import threading
 from functools import cache
 from pathlib import Path
 
@@ -8,7 +10,13 @@ import pytest
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import ReplayInputs
-from cubeling.app.session import Recorder, SessionFile, frame_encoder, messages, session_info
+from cubeling.app.session import (
+    Recorder,
+    SessionFile,
+    frame_encoder,
+    messages,
+    session_info,
+)
 from cubeling.app.session.codecs import CODECS
 from cubeling.app.session.encoding import FORMAT_KEY, SESSION_FORMAT
 from cubeling.files import FileKind
@@ -18,6 +26,9 @@ from cubeling.tracking.synthetic import open_synthetic
 from tests.app import session_parts
 
 SIZE = (64, 48)
+
+WAIT_S = 10.0
+"""Real time after which a test that waits for the recorder's thread has failed."""
 
 
 def frames(count=20, rate=30):
@@ -182,15 +193,46 @@ def test_a_missing_folder_is_refused_in_one_line(tmp_path):
         Recorder(tmp_path / "no" / "x.mcap", {})
 
 
-def test_all_but_the_last_half_second_survives_a_kill(tmp_path, recorder_steps):
+@pytest.fixture
+def synced(monkeypatch):
+    """Return a semaphore that is released whenever a recorder has told the disk to keep a file."""
+    count, real_sync = threading.Semaphore(0), os.fsync
+
+    def noting(file):
+        real_sync(file)
+        count.release()
+
+    monkeypatch.setattr(os, "fsync", noting)
+    return count
+
+
+def test_the_first_picture_is_kept_at_once(tmp_path, recorder_steps, synced):
     """The bytes on disk before `close` are what `kill -9` leaves."""
     path = tmp_path / "killed.mcap"
-    recorder = Recorder(path, {"scenario": "follow"})
-    recorder_steps(recorder, 45)
-    recorder.flush()
-    left = [time for _, time, _ in messages_of(path.read_bytes(), tmp_path)]
-    assert left[-1] > 44 / 30 - 1.0
-    recorder.close()
+    with Recorder(path, {"scenario": "follow"}) as recorder:
+        recorder_steps(recorder, 1)
+        assert synced.acquire(timeout=WAIT_S)
+        assert len(messages_of(path.read_bytes(), tmp_path)) == 1
+
+
+def test_a_chunk_ends_in_time_although_nothing_more_comes(
+    tmp_path, recorder_steps, synced, monkeypatch
+):
+    monkeypatch.setattr("cubeling.app.session.recorder.CHUNK_S", 0.02)
+    path = tmp_path / "killed.mcap"
+    with Recorder(path, {"scenario": "follow"}) as recorder:
+        recorder_steps(recorder, 10)
+        while len(messages_of(path.read_bytes(), tmp_path)) < 10:
+            assert synced.acquire(timeout=WAIT_S)
+
+
+def test_a_session_that_was_killed_before_its_first_picture_says_what_it_was(tmp_path):
+    path = tmp_path / "killed.mcap"
+    with Recorder(path, {"scenario": "follow"}):
+        left = path.read_bytes()
+    path.write_bytes(left)
+    info = session_info(path, salvage=True)
+    assert (info.options.scenario, info.frames) == ("follow", 0)
 
 
 def messages_of(data, folder):

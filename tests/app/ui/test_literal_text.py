@@ -23,7 +23,7 @@ def printed(content: object) -> str:
 
 
 def test_the_moods_of_a_robot_in_the_summary():
-    summary = Summary("companion", frames=2, duration=4.0, moods=[(0.0, 0.5, WILD)])
+    summary = Summary("companion", frames=2, duration=4.0, labels=[(0.0, WILD)])
     assert f"{SHOWN} 4.0 s" in printed(summary)
 
 

@@ -149,7 +149,7 @@ def test_the_summary_shows_frames_moods_and_processing_time(a_step):
     step = a_step(None)
     for _ in range(4):
         summary.add(step, ROBOT, 0.02)
-    assert summary.labels() == [(0.0, "happy")]
+    assert summary.labels == [(0.0, "happy")]
     shown = printed(summary)
     assert "4 frames" in shown
     assert "20.0 ms in the median, 20.0 ms at the 95th percentile" in shown

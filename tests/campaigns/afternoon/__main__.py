@@ -17,10 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.campaigns.afternoon.desktop import AfternoonError, Desktop
-from tests.campaigns.afternoon.phone import phone
 from tests.campaigns.afternoon.scenes import SCENES, Afternoon
-
-RECORDING = Path(__file__).parents[3] / "recordings" / "companion.mcap"
+from tests.campaigns.phone import jpegs, phone
 
 
 def main() -> None:
@@ -33,7 +31,7 @@ def main() -> None:
         if shutil.which(tool) is None:
             sys.exit(f"{tool} is not installed")
     failed = 0
-    with Desktop() as desktop, phone(RECORDING) as (camera, server):
+    with Desktop() as desktop, phone(jpegs()) as (camera, server):
         for name in options.scenes:
             start = time.monotonic()
             with TemporaryDirectory() as folder:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tests.app import session_parts
 from tests.campaigns.afternoon.desktop import AfternoonError, Desktop, Program, wait_for
-from tests.campaigns.afternoon.phone import PhoneServer
+from tests.campaigns.phone import PhoneServer
 
 MIN_CHANGE = 0.5
 """Mean difference of grey values between two pictures of a screen on which something moves."""

@@ -1,6 +1,7 @@
 """Pictures, a clock and a check that the tests of cameras and phones share."""
 
 import itertools
+import struct
 
 import cv2
 import numpy as np
@@ -19,6 +20,12 @@ def picture(number):
 
 def jpeg(number):
     return cv2.imencode(".jpg", picture(number))[1].tobytes()
+
+
+def claims(data, size):
+    """Return a JPEG whose header claims another width and height."""
+    start = data.index(b"\xff\xc0") + 5
+    return data[:start] + struct.pack(">HH", size[1], size[0]) + data[start + 4 :]
 
 
 def fast_clock(step=0.25):

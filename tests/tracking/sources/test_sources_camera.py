@@ -207,13 +207,26 @@ def test_undecodable_images_are_one_line(capture):
     capture.frames.get = wait
 
 
-def test_a_change_of_size_is_one_line(capture):
+def test_images_of_another_size_are_left_out_and_counted(capture):
     capture.frames.put(picture(0))
-    with open_camera(capture) as source:
-        frames = iter(source)
-        next(frames)
-        capture.frames.put(np.zeros((64, 48, 3), np.uint8))
-        fails(lambda: next(frames), "changed from 64x48 to 48x64")
+    clock = fast_clock(0.05)
+    with open_camera(capture, clock) as source:
+        source.wait(0.0)
+        upright = (np.full((64, 48, 3), number % 256, np.uint8) for number in itertools.count())
+        usual, capture.frames.get = capture.frames.get, lambda timeout: next(upright)
+
+        def lost():
+            while True:
+                assert source.wait(0.05, patience=3.0) is None
+
+        fails(lost, "changed from 64x48 to 48x64")
+        assert source.health.images_unusable
+        assert source.health.unusable > 0
+        capture.frames.get = usual
+        capture.frames.put(picture(1))
+        while (frame := source.wait(0.05)) is None:
+            pass
+        assert frame.image.shape == (48, 64, 3)
 
 
 def test_close_ends_the_iteration_and_releases_the_camera(capture):

@@ -5,17 +5,24 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from itertools import islice
 from pathlib import Path
 
 import cv2
 
 from cubeling.tracking import open_source
 
+RECORDING = Path(__file__).parents[2] / "recordings" / "companion.mcap"
+"""What the phone sees: a hand with the companion cube."""
 
-def jpegs(recording: Path) -> list[bytes]:
-    """Return the pictures of a recording as JPEG files."""
-    with open_source(str(recording)) as source:
-        return [cv2.imencode(".jpg", frame.image)[1].tobytes() for frame in source]
+
+def jpegs(count: int | None = None, size: tuple[int, int] | None = None) -> list[bytes]:
+    """Return the first pictures of the recording, or all, as JPEG files, of a size [px] or its."""
+    with open_source(str(RECORDING)) as source:
+        return [
+            cv2.imencode(".jpg", image if size is None else cv2.resize(image, size))[1].tobytes()
+            for image in (frame.image for frame in islice(source, count))
+        ]
 
 
 class PhoneServer(ThreadingHTTPServer):
@@ -56,9 +63,9 @@ class PhoneStream(BaseHTTPRequestHandler):
 
 
 @contextmanager
-def phone(recording: Path, rate: float = 30.0) -> Iterator[tuple[str, PhoneServer]]:
-    """Serve a recording, and yield the address of its camera."""
-    server = PhoneServer(jpegs(recording), rate)
+def phone(pictures: list[bytes], rate: float = 30.0) -> Iterator[tuple[str, PhoneServer]]:
+    """Serve pictures, and yield the address of the camera."""
+    server = PhoneServer(pictures, rate)
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
     try:
