@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.cube.model import CubeModel, side_of
 from cubeling.tracking.detection.markers import Observation
 from cubeling.tracking.detection.pose_from_points import CornerPose, CornerPoseSolver
 from cubeling.tracking.geometry import se3
@@ -88,7 +88,7 @@ class MarkerPoses:
             match = self._cells.search(image, solution.camera_from_cube, tone, read)
             found += self._candidates(image, solution, match, observations, tone)
         best = min(found, key=lambda each: each.rank, default=None)
-        if best is not None and best.certain and len(best.faces) == 1:
+        if best is not None and best.certain and best.lone:
             # The face may lean the other way, whether or not the corners proposed that.
             start = self._edges.mirrored_pose(best)
             if any(_near(each.camera_from_cube, start) for each in found):
@@ -119,7 +119,7 @@ class MarkerPoses:
             for face, share in refined.face_support.items()
             if share > MIN_FACE_SUPPORT and match.reading.agreement.get(face, 0.0) > MIN_AGREEMENT
         )
-        if len(faces) < 2 or refined.sharpness < MIN_SHARPNESS:
+        if len({side_of(face) for face in faces}) < 2 or refined.sharpness < MIN_SHARPNESS:
             return None
         if match.reading.best < MIN_BEST_AGREEMENT:
             return None
@@ -170,7 +170,7 @@ class MarkerPoses:
             return []
         error = self._solver.error(pose, solution.observations)
         candidate = replace(match.candidate, error=error)
-        if len(candidate.faces) == 1:
+        if candidate.lone:
             smeared = MAX_LONE_BLUR_CELLS * self._footprint.pixels_per_cell(pose)
             blurred = candidate.blur > max(MAX_LONE_BLUR_PX, smeared)
             unlike = match.alignment.correlations[candidate.faces[0]] < MIN_LONE_CORRELATION
@@ -209,7 +209,7 @@ class MarkerPoses:
 
         Beside two faces that are found only a near one contradicts: a far one is another cube's.
         """
-        far = np.inf if len(faces) == 1 else MAX_OWN_DISTANCE
+        far = np.inf if len({side_of(face) for face in faces}) == 1 else MAX_OWN_DISTANCE
         distances = [
             self._distance(pose, each) for each in observations if each.face.name not in faces
         ]
