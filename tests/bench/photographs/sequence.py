@@ -109,7 +109,9 @@ def main() -> None:
         write_cube(body_model()[0], BODY_FILE)
     numbers = range(len(paths()))
     result = score(numbers, track(numbers))
-    print(f"{result.frames} photographs: {result.found} trusted, {result.right} within 10 mm and 5°")
+    print(
+        f"{result.frames} photographs: {result.found} trusted, {result.right} within 10 mm and 5°"
+    )
     print(f"silently wrong: {result.wrong}\n")
     print("| median (95 %) | |")
     print("|---|---|")
