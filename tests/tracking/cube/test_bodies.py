@@ -1,5 +1,7 @@
 """Files of boxes and other bodies: what they describe, and what is refused."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -95,6 +97,16 @@ def test_a_body_is_written_and_read_back(tmp_path, text):
         assert (new.role, new.roll_deg) == (old.role, old.roll_deg)
     for new, old in zip(again.sides, body.sides, strict=True):
         np.testing.assert_allclose(new.corners, old.corners, atol=1e-7)
+
+
+def test_the_bodies_of_the_guide_are_those_that_it_describes(tmp_path):
+    guide = (Path(__file__).parents[3] / "docs" / "your-own-cube.md").read_text(encoding="utf-8")
+    cube, box, wedge = (
+        load(tmp_path, text.partition("```")[0]) for text in guide.split("```toml")[1:]
+    )
+    assert (cube.body, len(box.body), len(wedge.body)) == ((), 6, 2)
+    assert [face.name for face in box.faces] == ["front/1", "front/2", "top"]
+    assert [face.name for face in wedge.faces] == ["slope"]
 
 
 def test_a_body_that_is_scaled_keeps_its_proportions(tmp_path):
