@@ -6,11 +6,14 @@ its file beside the tests.
 """
 
 import argparse
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from rich.console import Console
+from rich.table import Table
 
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry import se3
@@ -54,7 +57,7 @@ class SequenceScore:
     """The same of the angle [rad]."""
 
     step_shift: tuple[float, float]
-    """How far the movement from one picture to the next is off that of the bundle adjustment [m]."""
+    """How far the step from one picture to the next is off that of the bundle adjustment [m]."""
 
     step_turn: tuple[float, float]
     """The same of its angle [rad]."""
@@ -78,7 +81,7 @@ def score(numbers: Sequence[int], states: Sequence[CubeState]) -> SequenceScore:
     steps = np.array(
         [
             se3.delta(one, other) - se3.delta(one_truth, other_truth)
-            for (one, one_truth), (other, other_truth) in zip(both, both[1:], strict=False)
+            for (one, one_truth), (other, other_truth) in itertools.pairwise(both)
             if one is not None and other is not None
         ]
     )
@@ -109,20 +112,21 @@ def main() -> None:
         write_cube(body_model()[0], BODY_FILE)
     numbers = range(len(paths()))
     result = score(numbers, track(numbers))
-    print(
-        f"{result.frames} photographs: {result.found} trusted, {result.right} within 10 mm and 5°"
+    console = Console()
+    console.print(
+        f"{result.frames} photographs: {result.found} trusted, "
+        f"{result.right} within 10 mm and 5°, {result.wrong} silently wrong"
     )
-    print(f"silently wrong: {result.wrong}\n")
-    print("| median (95 %) | |")
-    print("|---|---|")
-    for name, (middle, high), scale, unit in (
+    table = Table("", "median", "95 %")
+    for name, spread, scale, unit in (
         ("reprojection error", result.error, 1.0, "px"),
         ("off the bundle adjustment", result.shift, 1e3, "mm"),
         ("", result.turn, 180 / np.pi, "°"),
         ("step to the next picture off", result.step_shift, 1e3, "mm"),
         ("", result.step_turn, 180 / np.pi, "°"),
     ):
-        print(f"| {name} | {middle * scale:.2f} ({high * scale:.2f}) {unit} |")
+        table.add_row(name, *(f"{scale * each:.2f} {unit}" for each in spread))
+    console.print(table)
 
 
 if __name__ == "__main__":

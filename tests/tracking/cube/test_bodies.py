@@ -142,7 +142,12 @@ def test_a_cube_with_a_marker_off_the_middle_is_a_body(tmp_path):
         (PYRAMID, "normal = [0, 1, 1]", "normal = [0, 0, 0]", "normal: it has no direction"),
         (PYRAMID, "normal = [0, 1, 1]", "normal = [0, -1, -1]", "away from the origin"),
         (PYRAMID, "up = [0, 1, 1]", "up = [0, 1, -1]", "up: it points where the normal does"),
-        (PYRAMID, "center_mm = [0, 5, 15]", "", "center_mm is missing; it must be a list of 3 numbers"),
+        (
+            PYRAMID,
+            "center_mm = [0, 5, 15]",
+            "",
+            "center_mm is missing; it must be a list",
+        ),
         (PYRAMID, "[30, 30], [-30, 30]", "[-30, 30], [30, 30]", "it must be convex"),
         (PYRAMID, "[[-30, -30], [30, -30],", "[[-30], [30],", "at least 3 corners of 2 numbers"),
         (PYRAMID, "-30], [30, 30]", "nan], [30, 30]", "at least 3 corners of 2 numbers"),
