@@ -7,6 +7,7 @@ and the photographs show right prints. `python -m tests.bench.prints`.
 import argparse
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -53,17 +54,13 @@ def changes() -> Iterator[tuple[str, str, Change]]:
     """Yield the name, the kind and the print of each fault."""
     for turn in (90, 180, 270):
         fault = PrintFault("rolled", ("front",), turn)
-        yield (
-            f"a face rolled by {turn}°",
-            "rolled",
-            lambda cube, fault=fault: cube_with(cube, fault),
-        )
+        yield f"rolled by {turn}°", "rolled", partial(cube_with, fault=fault)
     for pair in (("front", "right"), ("front", "back")):
         fault = PrintFault("swapped", pair)
-        yield " and ".join(pair), "swapped", lambda cube, fault=fault: cube_with(cube, fault)
+        yield " and ".join(pair), "swapped", partial(cube_with, fault=fault)
     for percent in (-10, -6, -3, 3, 6, 10):
         share = 1 + percent / 100
-        yield f"markers {percent:+} %", "size", lambda cube, share=share: with_markers(cube, share)
+        yield f"markers {percent:+} %", "size", partial(with_markers, share=share)
 
 
 def recorded(name: str) -> PrintFault | None:

@@ -8,13 +8,11 @@ import av
 import cv2
 import numpy as np
 from av.codec.context import Flags
-from av.sidedata.sidedata import SideData, Type as SideDataType
+from av.sidedata.sidedata import Type as SideDataType
 from av.video.stream import VideoStream
 
 from cubeling.tracking.geometry.arrays import Image
 from cubeling.tracking.sources.device import decode_jpeg
-
-DISPLAY_MATRIX = SideDataType.DISPLAYMATRIX
 
 MAX_PIXEL_SHAPE = 4.0
 """Pixels are at most so many times wider than high, or the reverse: more is a broken header."""
@@ -72,8 +70,11 @@ def bgr_of(frame: av.VideoFrame, pixel_shape: float = 1.0) -> Image:
         # The shorter side of the pixels grows, so that nothing is lost.
         size = round(frame.width * max(pixel_shape, 1)), round(frame.height / min(pixel_shape, 1))
         image = cv2.resize(image, size, interpolation=cv2.INTER_LINEAR_EXACT)
-    matrix = frame.side_data.get(DISPLAY_MATRIX)
-    return image if matrix is None else _displayed(image, matrix)
+    pixels = np.asarray(image, np.uint8)
+    for data in frame.side_data:
+        if data.type == SideDataType.DISPLAYMATRIX:
+            return _displayed(pixels, bytes(data))
+    return pixels
 
 
 def pixel_shape_of(stream: VideoStream) -> float:
@@ -82,7 +83,7 @@ def pixel_shape_of(stream: VideoStream) -> float:
     return float(ratio) if 1 / MAX_PIXEL_SHAPE <= ratio <= MAX_PIXEL_SHAPE else 1.0
 
 
-def _displayed(image: Image, matrix: SideData) -> Image:
+def _displayed(image: Image, matrix: bytes) -> Image:
     """Turn and mirror an image by quarters, as its display matrix says (`libavutil/display.h`).
 
     A phone held upright stores its images rotated, one that films its owner perhaps mirrored.

@@ -15,6 +15,7 @@ from urllib.error import URLError
 from urllib.parse import SplitResult, unquote, urlsplit
 from urllib.request import (
     AbstractDigestAuthHandler,
+    HTTPPasswordMgr,
     Request,
     parse_http_list,
     parse_keqv_list,
@@ -91,9 +92,10 @@ class _MjpegStream:
             self._connection.close()
             # A server that says nothing at all has "no status", too.
             if isinstance(error, BadStatusLine) and not isinstance(error, OSError):
+                line = str(error.args[0]).strip()[:60]
                 raise TrackingError(
-                    f"{name} does not answer in HTTP: its first line is "
-                    f"'{error.line.strip()[:60]}', not a status such as 'HTTP/1.1 200 OK'"
+                    f"{name} does not answer in HTTP: its first line is '{line}', "
+                    "not a status such as 'HTTP/1.1 200 OK'"
                 ) from error
             raise TrackingError(
                 f"cannot connect to {name} ({_reason(error)}): "
@@ -155,13 +157,14 @@ def _basic_authorization(address: SplitResult) -> dict[str, str]:
 
 def _digest_authorization(address: SplitResult, challenge: str, name: str) -> dict[str, str]:
     """Answer the challenge of a server that wants no password in clear text (RFC 7616)."""
-    handler = AbstractDigestAuthHandler()
+    passwords = HTTPPasswordMgr()
+    handler = AbstractDigestAuthHandler(passwords)
     request = Request(f"{address.scheme}://{address.hostname}{_target(address)}")
     values = parse_keqv_list(parse_http_list(challenge.partition(" ")[2]))
     if "qop" in values:
         values["qop"] = values["qop"].replace(" ", "")  # the handler splits at commas alone
-    handler.add_password(
-        values.get("realm"),
+    passwords.add_password(
+        values.get("realm", ""),
         request.full_url,
         unquote(address.username or ""),
         unquote(address.password or ""),

@@ -166,9 +166,9 @@ class PrintCheck:
         if len(self._sizes) >= MAX_SIZE_LOOKS:
             return
         found = [
-            (pose.error, share, pose.camera_from_cube)
+            (solved.error, share, solved.camera_from_cube)
             for share, (cube, solver) in zip(SIZES, self._sized, strict=True)
-            if (pose := _explained(solver, cube, seen)) is not None
+            if (solved := _explained(solver, cube, seen)) is not None
         ]
         if not found:
             return

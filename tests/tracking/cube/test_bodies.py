@@ -95,8 +95,8 @@ def test_a_body_is_written_and_read_back(tmp_path, text):
     for new, old in zip(again.faces, body.faces, strict=True):
         np.testing.assert_allclose(new.corners, old.corners, atol=1e-7)
         assert (new.role, new.roll_deg) == (old.role, old.roll_deg)
-    for new, old in zip(again.sides, body.sides, strict=True):
-        np.testing.assert_allclose(new.corners, old.corners, atol=1e-7)
+    for side, before in zip(again.sides, body.sides, strict=True):
+        np.testing.assert_allclose(side.corners, before.corners, atol=1e-7)
 
 
 def test_the_bodies_of_the_guide_are_those_that_it_describes(tmp_path):

@@ -14,7 +14,7 @@ from tests.tracking.gestures.test_gestures import COVARIANCE, camera_from_table
 
 Array = NDArray[np.float64]
 
-BODIES = {
+BODIES: dict[str, dict[str, object]] = {
     "box": {"size_mm": [90, 40, 60], "face": [{"name": "front", "marker_id": 0}]},
     "pyramid": {
         "face": [

@@ -2,8 +2,10 @@
 
 import struct
 import sys
+from collections.abc import Callable
 from fractions import Fraction
 from types import ModuleType
+from typing import Any
 
 import av
 import cv2
@@ -287,7 +289,7 @@ def test_a_video_of_pixels_that_are_not_square_is_stretched(tmp_path, shape, siz
     assert np.abs(frames[0].image.astype(int) - expected).mean() < 3
 
 
-MATRICES = {
+MATRICES: dict[str, tuple[tuple[int, int, int, int], Callable[[Any], Any]]] = {
     "as it is": ((1, 0, 0, 1), lambda image: image),
     "a quarter clockwise": ((0, 1, -1, 0), lambda image: np.rot90(image, -1)),
     "upside down": ((-1, 0, 0, -1), lambda image: np.rot90(image, 2)),

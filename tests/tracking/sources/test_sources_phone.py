@@ -185,13 +185,13 @@ def test_a_boundary_that_is_not_told_is_found_in_the_stream(phone, path):
 
 def test_a_half_image_is_left_out_and_counted(phone):
     with open_source(f"http://{phone}/halves") as source:
+        assert isinstance(source, HttpSource)
         Phone.next_part.set()
         frames = [next(iter(source)).encoded]
         while len(frames) < 3:
             Phone.next_part.set()
             frame = source.wait(0.05)
             frames += [frame.encoded] if frame else []
-        assert isinstance(source, HttpSource)
         assert source.health.unusable >= 1
     whole = {jpeg(number) for number in range(9) if number % 3 != 1}
     assert whole.issuperset(frames)

@@ -11,7 +11,7 @@ import av
 import numpy as np
 import pytest
 
-from cubeling.tracking import TrackingError, open_source
+from cubeling.tracking import LiveFrames, TrackingError, open_source
 from tests.tracking.sources.live import SIZE, picture
 
 FRAMES = 30
@@ -106,6 +106,7 @@ def test_a_network_camera_delivers_its_frames(camera):
 @pytest.mark.parametrize("camera", ["anna:s cret"], indirect=True)
 def test_name_and_password_are_sent_but_not_printed_when_wrong(camera):
     with open_source(f"rtsp://anna:s%20cret@{camera}") as source:
+        assert isinstance(source, LiveFrames)
         assert source.health.name == f"rtsp://{camera}"
     with pytest.raises(TrackingError, match="name and password") as caught:
         open_source(f"rtsp://anna:guess@{camera}")

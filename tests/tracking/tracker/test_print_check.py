@@ -84,4 +84,5 @@ def test_one_look_is_not_enough_and_a_right_look_speaks_against_a_fault() -> Non
         check.look(Frame(wrong, float(number), number))
     assert check.fault == PrintFault("rolled", ("front",), 90)
     check.look(Frame(good, 4.0, 4))
+    assert check.agreed == 1
     assert check.fault is None
