@@ -154,8 +154,9 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 bench-tracking: .venv/ready-dev  ## compare the cube's tracker with others on the same frames
 	$(BIN)/python -m tests.bench.tracking --readme tracking/README.md
 
-bench-photographs: .venv/ready-dev  ## compare the cube's tracker with OpenCV on photographs, and find the hand on them
+bench-photographs: .venv/ready-dev  ## compare the cube's tracker with OpenCV on photographs, follow them as one sequence, and find the hand on them
 	$(BIN)/python -m tests.bench.photographs
+	$(BIN)/python -m tests.bench.photographs.sequence
 	$(BIN)/python -m tests.bench.photographs.hands
 
 recordings: .venv/ready-dev  ## record the bundled sessions again

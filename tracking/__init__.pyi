@@ -33,5 +33,10 @@ from cubeling.tracking.sources.base import (
     nanoseconds_of as nanoseconds_of,
 )
 from cubeling.tracking.sources.device import Health as Health
+from cubeling.tracking.tracker.print_check import (
+    PrintCheck as PrintCheck,
+    PrintFault as PrintFault,
+    cube_with as cube_with,
+)
 from cubeling.tracking.tracker.several import CubesTracker as CubesTracker
 from cubeling.tracking.tracker.tracker import CubeTracker as CubeTracker

@@ -191,14 +191,14 @@ def _report_cube(
     import numpy as np
 
     from cubeling.app.pipeline.other_cube import scenario_for
-    from cubeling.tracking import face_corners, write_cube
+    from cubeling.tracking import write_cube
     from cubeling.tracking.calibration import measured_cube
 
     cube = measured_cube(ideal, found.plates)
     worst = 0.0
     for face in cube.faces:
-        designed = face_corners(face.name, face.roll_deg, cube.marker_size, cube.edge)
-        worst = max(worst, float(np.linalg.norm(face.corners - designed, axis=1).max()))
+        off = face.corners - cube.designed_corners(face)
+        worst = max(worst, float(np.linalg.norm(off, axis=1).max()))
     if path is not None:
         write_cube(cube, path)
         name = escape(str(path))

@@ -68,9 +68,11 @@ class CubeWindow:
         self, cube: CubeModel, character: Character, roles: Sequence[str], choice: str = "auto"
     ) -> None:
         self._cube, self._character = cube, character
-        self._top_decides, self._choice = bool(roles), inside_of(choice)
-        self._with_role = frozenset(face.name for face in cube.faces if face.role)
-        self._wanted = choice == "always"
+        self._top_decides = bool(roles)
+        # What is inside is drawn in a cube.
+        self._choice = inside_of("never" if cube.body else choice)
+        self._with_role = frozenset(face.side for face in cube.faces if face.role)
+        self._wanted = self._choice == "always"
         self._asked_by_face = False
         self._changing_since: float | None = None
         self._opening = 0.0

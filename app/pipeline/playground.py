@@ -17,6 +17,7 @@ from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.other_cube import OtherCube, advice
 from cubeling.app.pipeline.picture_regions import picture_regions
+from cubeling.app.pipeline.print_watch import PrintWatch, fault_advice
 from cubeling.app.pipeline.props import BodyParts, PosedBody
 from cubeling.app.pipeline.registry import make_scenario
 from cubeling.app.pipeline.scenario import (
@@ -55,6 +56,7 @@ from cubeling.tracking import (
     Frame,
     Intrinsics,
     LensEstimate,
+    PrintFault,
     TrackingError,
 )
 from cubeling.tracking.appearance import APPEARANCE_PARTS, Appearance, AppearanceMeter
@@ -82,6 +84,8 @@ STATE_NAMES = (
     "_other_cube",
     "other_cube",
     "_sheet_seen_at",
+    "_print_watch",
+    "print_fault",
     "_speaking",
     "_complexion",
     "_window",
@@ -189,6 +193,9 @@ class Playground:
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""
         self._sheet_seen_at = -math.inf
+        self._print_watch = PrintWatch(cube, self.intrinsics)
+        self.print_fault: PrintFault | None = None
+        """In what the print of the cube differs from its file, while the player is told."""
         self._speaking = Speaking()
         self._complexion = Complexion()
 
@@ -306,6 +313,7 @@ class Playground:
         if replay.command is not None:
             command = replay.command
         self.other_cube = self._other_cube.update(frame, state)
+        self.check_print(frame, state)
         self._lap("scenario")
         posed = replay.pose_for(self.character) or self.animate(command)
         self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
@@ -361,6 +369,12 @@ class Playground:
             LOG.debug("the tracker failed in frame %d", frame.index, exc_info=True)
             return self._tracker.give_up(frame.timestamp)
 
+    def check_print(self, frame: Frame, state: CubeState) -> None:
+        """Look now and then whether the cube is printed as its file says; read it if it can be."""
+        self.print_fault = self._print_watch.update(frame, state)
+        if self._print_watch.printed is not self._tracker.cube:
+            self._tracker = CubeTracker(self._print_watch.printed, self.intrinsics)
+
     def gesture(self, state: CubeState) -> CubeControls:
         """Compute what the hand does with the cube."""
         return self._gestures.update(state)
@@ -406,6 +420,8 @@ class Playground:
             return FOLD_IT
         if self.other_cube is not None:
             return advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
+        if self.print_fault is not None:
+            return fault_advice(self.print_fault, self.cube)
         return LOOK_INSIDE if self._window.invites else decision.hint
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:

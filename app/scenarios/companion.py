@@ -52,7 +52,7 @@ class Companion:
     adjustable = ("turns", "personality")
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
-        self._roles = {face.name: face.role for face in cube.faces}
+        self._roles = {face.side: face.role for face in cube.faces}
         self._turns = settings.turns
         self._mood = MoodController(settings.personality or Personality.load(self.personality))
         self._presence = Presence()

@@ -90,8 +90,7 @@ def digitised(grey: Light, noise: float = 1.0, seed: int = 1) -> Picture:
 
 def window(cube: CubeModel, poses: Sequence[Array], camera: Intrinsics) -> tuple[int, ...]:
     """Left, top, right and bottom of the pixels around a cube at its poses, with a rim."""
-    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    points = np.concatenate([signs * cube.edge / 2 @ p[:3, :3].T + p[:3, 3] for p in poses])
+    points = np.concatenate([cube.vertices @ p[:3, :3].T + p[:3, 3] for p in poses])
     seen = points @ camera.matrix.T
     pixels = seen[:, :2] / seen[:, 2:]
     low, high = np.maximum(pixels.min(axis=0) - 4, 0), pixels.max(axis=0) + 5
@@ -123,6 +122,13 @@ def _drawn(
         ]
     )
     shifted = np.array([[1, 0, -origin[0]], [0, 1, -origin[1]], [0, 0, 1.0]])
+    for side in cube.body:
+        corners = side.corners @ pose[:3, :3].T + pose[:3, 3]
+        if (pose[:3, :3] @ side.normal) @ corners[0] < 0:
+            seen = corners @ (finer @ shifted @ camera.matrix).T
+            grey = WHITE * SHADE.get(side.name, 0.9)
+            points = np.rint(16 * seen[:, :2] / seen[:, 2:]).astype(np.int32)
+            cv2.fillConvexPoly(canvas, points, grey, shift=4)
     for face in cube.faces:
         centre = pose[:3, :3] @ face.corners.mean(axis=0) + pose[:3, 3]
         if (pose[:3, :3] @ face.normal) @ centre >= 0:
@@ -142,14 +148,15 @@ def _paper(cube: CubeModel, face: Face) -> Light:
     cells = np.kron(
         marker_cells(cube.dictionary, face.marker_id), np.ones((TEXELS_PER_CELL, TEXELS_PER_CELL))
     )
-    rim = round((cube.edge / cube.marker_size - 1) / 2 * len(cells))
+    rim = round((cube.paper / cube.marker_size - 1) / 2 * len(cells))
     texture = WHITE + (BLACK - WHITE) * np.pad(cells, rim)
-    return (SHADE[face.name] * texture).astype(np.float32)
+    return (SHADE.get(face.side, 0.9) * texture).astype(np.float32)
 
 
 def _plane(cube: CubeModel, face: Face, count: int, pose: Array) -> Array:
     """Point in the camera's frame for the (column, row, 1) of a texel, (3, 3)."""
-    grow = cube.edge / cube.marker_size
+    # By whole texels, as the paper is drawn.
+    grow = count / (TEXELS_PER_CELL * len(marker_cells(cube.dictionary, face.marker_id)))
     centre = face.corners.mean(axis=0)
     corners = (centre + grow * (face.corners - centre)) @ pose[:3, :3].T + pose[:3, 3]
     right, down = (corners[1] - corners[0]) / count, (corners[3] - corners[0]) / count

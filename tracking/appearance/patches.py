@@ -115,16 +115,16 @@ def white_points(cube: CubeModel, face: Face) -> tuple[Array, float]:
 
 def _white_texels(cube: CubeModel, face: Face, texel: float) -> Flags:
     """Return where a face is bare paper, (side, side), x to the marker's right and y down."""
-    side = round(cube.edge / texel)
+    side = round(cube.paper / texel)
     place = np.abs((np.arange(side) + 0.5) * texel - side * texel / 2)
     cells = marker_cells(cube.dictionary, face.marker_id)
-    margin = round((cube.edge - cube.marker_size) / 2 / texel)
+    margin = round((cube.paper - cube.marker_size) / 2 / texel)
     inner = np.arange(side - 2 * margin) * len(cells) // (side - 2 * margin)
     white = np.ones((side, side), bool)
     white[margin : side - margin, margin : side - margin] = ~cells[inner][:, inner]
     if face.icon:  # in the middle of each margin
-        size = ICON_SHARE * (cube.edge - cube.marker_size) / 2
-        high = cube.edge / 2 - FOLD_GAP_SHARE * (cube.edge - cube.marker_size) / 2
+        size = ICON_SHARE * (cube.paper - cube.marker_size) / 2
+        high = cube.paper / 2 - FOLD_GAP_SHARE * (cube.paper - cube.marker_size) / 2
         across, along = place < size / 2, (place > high - size) & (place < high)
         white &= ~(across[:, None] & along | along[:, None] & across)
     return white

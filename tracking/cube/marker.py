@@ -23,8 +23,8 @@ def cell_size(cube: CubeModel) -> float:
 
 
 def black_texels(cube: CubeModel, cells: Flags, side: int) -> Flags:
-    """Return which texels of a face are black where its marker has these cells, (side, side)."""
-    texel = (np.arange(side) + 0.5) / side * cube.edge - cube.edge / 2
+    """Return which texels of the paper are black where its marker has these cells, (side, side)."""
+    texel = (np.arange(side) + 0.5) / side * cube.paper - cube.paper / 2
     cell = (texel + cube.marker_size / 2) / cube.marker_size * len(cells)
     inside = (cell >= 0) & (cell < len(cells))
     index = np.clip(cell.astype(int), 0, len(cells) - 1)

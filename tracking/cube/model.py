@@ -1,4 +1,4 @@
-"""The model of a cube: its TOML file, and its markers in space."""
+"""The model of a cube, or of another body: its TOML file, and its markers in space."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,26 +9,27 @@ import numpy as np
 
 from cubeling.toml_file import TomlTable, read, toml_kind
 from cubeling.tracking.cube.icons import ICON_COLOURS
+from cubeling.tracking.cube.sides import (
+    FACE_AXES as FACE_AXES,
+    SIDE_KEYS,
+    Side,
+    box_sides,
+    read_side,
+    shared_plane,
+)
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.arrays import Array
 
 CUBE_FILE = toml_kind("cube", TrackingError, "cubeling.tracking.cube.model:CubeModel.load")
 """The file of a cube."""
 
-FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
-    "front": ((1, 0, 0), (0, 1, 0)),
-    "right": ((0, 0, -1), (0, 1, 0)),
-    "back": ((-1, 0, 0), (0, 1, 0)),
-    "left": ((0, 0, 1), (0, 1, 0)),
-    "top": ((1, 0, 0), (0, 0, -1)),
-    "bottom": ((1, 0, 0), (0, 0, 1)),
-}
-"""For each face, seen from outside: the directions (right, up) in the cube frame."""
-
 
 @dataclass(frozen=True)
 class Face:
-    """One face of the cube and the marker printed on it."""
+    """A marker of the cube, and what the side that carries it means.
+
+    A side of a cube usually carries one; of several, each is a face with a name such as "lid/2".
+    """
 
     name: str
 
@@ -51,6 +52,14 @@ class Face:
     roll_deg: int = 0
     """Rotation of the marker on its face: 0, 90, 180 or 270, clockwise seen from outside."""
 
+    at: tuple[float, float] = (0.0, 0.0)
+    """Middle of the marker on its side, right and up from the centre seen from outside [m]."""
+
+    @property
+    def side(self) -> str:
+        """Name of the side of the body that carries the marker."""
+        return side_of(self.name)
+
     @property
     def normal(self) -> Array:
         """Outward unit normal in the cube frame, (3,), by the measured corners."""
@@ -62,11 +71,21 @@ class Face:
         return square if np.abs(normal - square).max() < 1e-9 else normal
 
 
+def side_of(face: str) -> str:
+    """Return the name of the side that carries a face's marker.
+
+    >>> side_of("front"), side_of("lid/2")
+    ('front', 'lid')
+    """
+    return face.partition("/")[0]
+
+
 @dataclass(frozen=True)
 class CubeModel:
-    """A cube with markers on its faces.
+    """A cube with markers on its faces, or any rigid body of flat sides.
 
-    Its frame: origin in the centre, +y through `top`, +z through `front`, +x through `right`.
+    Its frame: origin in the centre, +y through `top`, +z through `front`, +x through `right`. That
+    of a body without these sides is the one of its file, with the origin inside.
     """
 
     name: str
@@ -76,7 +95,8 @@ class CubeModel:
     """Name of the OpenCV dictionary, "DICT_4X4_50" …"""
 
     edge: float
-    """Edge of the cube in metres."""
+    """Edge of the cube in metres; of another body, that of a cube of about its size: twice the mean
+    distance of its sides from the origin."""
 
     marker_size: float
     """Side of the black square in metres."""
@@ -86,6 +106,9 @@ class CubeModel:
 
     hint: str = ""
     """One sentence for the person who holds the cube, or ""."""
+
+    body: tuple[Side, ...] = ()
+    """The sides of a body that is no cube, with and without markers; () for a cube."""
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> Self:
@@ -116,30 +139,69 @@ class CubeModel:
         """Make a cube from the tables of its TOML file. `where` names the file in errors."""
         table = TomlTable(document, where, error=TrackingError)
         table.only(*FILE_KEYS)
-        edge_mm, marker_mm = (table.number(key, 1, 1000) for key in ("edge_mm", "marker_mm"))
-        if marker_mm >= edge_mm:
-            raise table.wrong(
-                "marker_mm",
-                f"the marker ({marker_mm:g} mm) does not fit its face ({edge_mm:g} mm); "
-                "leave a white border of at least one marker cell",
-            )
+        marker = table.number("marker_mm", 1, 1000) / 1000
         capacity = _capacity(table)
         rows = table.rows("face")
         if not rows:
             raise table.wrong("face", "a cube needs at least one [[face]] table")
-        faces = tuple(_face(row, capacity, marker_mm / 1000, edge_mm / 1000) for row in rows)
+        sides = _sides(table, rows, marker)
+        edge = 2 * float(np.mean([side.height for side in sides]))
+        # A cube as it is printed here: its sides follow from its edge.
+        plain = "edge_mm" in table and not any({"marker", "at_mm"} & set(row) for row in rows)
+        by_name = {side.name: side for side in sides}
+        keys = FACE_KEYS if {"edge_mm", "size_mm"} & set(table) else (*FACE_KEYS, *SIDE_KEYS)
+        faces = tuple(face for row in rows for face in _faces(row, keys, capacity, marker, by_name))
+        if not faces:
+            raise table.wrong("face", "none of them has a marker_id")
         for key in ("name", "marker_id"):
             values = [getattr(face, key) for face in faces]
             if twice := [value for value in values if values.count(value) > 1]:
                 raise table.wrong("face", f"two have the {key} {twice[0]!r}; each must differ")
-        return cls(
+        cube = cls(
             table.line("name", "") or name,
             table.text("dictionary"),
-            edge_mm / 1000,
-            marker_mm / 1000,
+            edge,
+            marker,
             faces,
             table.line("hint", ""),
+            () if plain else sides,
         )
+        if marker >= cube.paper:
+            raise table.wrong(
+                "marker_mm",
+                f"the marker ({marker * 1000:g} mm) does not fit its face "
+                f"({cube.paper * 1000:g} mm); leave a white border of at least one marker cell",
+            )
+        return cube
+
+    @property
+    def sides(self) -> tuple[Side, ...]:
+        """All sides, with and without markers."""
+        return self.body or box_sides(self.edge, self.edge, self.edge)
+
+    @property
+    def vertices(self) -> Array:
+        """Corners of all sides, each once, (N, 3) [m]."""
+        return np.unique(np.concatenate([side.corners for side in self.sides]), axis=0)
+
+    @property
+    def paper(self) -> float:
+        """Side of the square around the middle of each marker that has no other print [m]."""
+        if not self.body:
+            return self.edge
+        sides = {side.name: side for side in self.body}
+        room = [sides[face.side].room(face.at) for face in self.faces]
+        for number, one in enumerate(self.faces):
+            for other in self.faces[:number]:
+                if one.side == other.side:
+                    apart = np.abs(np.subtract(one.at, other.at)).max()
+                    room.append(2 * float(apart) - self.marker_size)
+        return min(room)
+
+    def designed_corners(self, face: Face) -> Array:
+        """Where the corners of a face would be on a body without errors, as `Face.corners`."""
+        side = next(side for side in self.sides if side.name == face.side)
+        return side.square(self.marker_size, face.at, face.roll_deg)
 
     @property
     def markers(self) -> frozenset[tuple[str, int]]:
@@ -162,11 +224,20 @@ class CubeModel:
         if not 0.01 <= edge <= 1:
             raise TrackingError(f"the edge must be 10 to 1000 mm, not {edge * 1000:g} mm")
         factor = edge / self.edge
-        faces = tuple(replace(face, corners=face.corners * factor) for face in self.faces)
-        return replace(self, edge=edge, marker_size=self.marker_size * factor, faces=faces)
+        faces = tuple(
+            replace(
+                face,
+                corners=face.corners * factor,
+                at=(face.at[0] * factor, face.at[1] * factor),
+            )
+            for face in self.faces
+        )
+        body = tuple(side.scale(factor) for side in self.body)
+        size = self.marker_size * factor
+        return replace(self, edge=edge, marker_size=size, faces=faces, body=body)
 
     def face(self, name: str) -> Face:
-        """Return the face with a name, one of `FACE_AXES`.
+        """Return the face with a name: on a cube, one of `FACE_AXES`.
 
         Raises
         ------
@@ -179,11 +250,17 @@ class CubeModel:
         raise KeyError(name)
 
 
-FILE_KEYS = ("name", "hint", "dictionary", "edge_mm", "marker_mm", "face")
-"""The keys of a cube's file."""
+FILE_KEYS = ("name", "hint", "dictionary", "edge_mm", "size_mm", "marker_mm", "face")
+"""The keys of a cube's file: a cube has `edge_mm`, a box `size_mm`, any other body neither."""
 
-FACE_KEYS = ("name", "marker_id", "roll_deg", "role", "icon", "corners_mm")
-"""The keys of each of its [[face]] tables."""
+MARKER_KEYS = ("marker_id", "at_mm", "roll_deg", "corners_mm")
+"""The keys of a marker, in its [[face]] table or in one of several [[face.marker]] tables."""
+
+FACE_KEYS = ("name", *MARKER_KEYS, "role", "icon", "marker")
+"""The keys of each of its [[face]] tables, besides `SIDE_KEYS` of a body."""
+
+BORDER_CELLS = 1.0
+"""White border around the marker of a side that has no outline [cells]."""
 
 CUBES_FOLDER = Path(__file__).parents[1] / "cubes"
 
@@ -207,11 +284,8 @@ def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> Array:
     >>> face_corners("front", 90, 0.04, 0.06)[0].tolist()
     [0.02, 0.02, 0.03]
     """
-    right, up = (np.array(axis, float) for axis in FACE_AXES[name])
-    square = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) * (marker / 2)
-    square = np.roll(square, -(roll_deg // 90), axis=0)
-    corners = square[:, :1] * right + square[:, 1:] * up + np.cross(right, up) * (edge / 2)
-    return np.asarray(corners, np.float64)
+    side = next(side for side in box_sides(edge, edge, edge) if side.name == name)
+    return side.square(marker, roll_deg=roll_deg)
 
 
 def _capacity(table: TomlTable) -> int:
@@ -222,17 +296,59 @@ def _capacity(table: TomlTable) -> int:
     return len(aruco_dictionary(name).bytesList)
 
 
-def _face(table: TomlTable, capacity: int, marker: float, edge: float) -> Face:
-    table.only(*FACE_KEYS)
-    name, icon = table.choice("name", FACE_AXES), table.choice("icon", ("", *ICON_COLOURS), "")
-    roll = int(table.number("roll_deg", default=0))
-    if roll not in (0, 90, 180, 270):
-        raise table.unlike("roll_deg", "0, 90, 180 or 270")
-    corners = face_corners(name, roll, marker, edge)
-    if "corners_mm" in table:
-        corners = measured_corners(table, corners, marker)
-    marker_id = table.whole("marker_id", 0, capacity - 1)
-    return Face(name, marker_id, corners, table.line("role", ""), icon, roll)
+def _sides(table: TomlTable, rows: tuple[TomlTable, ...], marker: float) -> tuple[Side, ...]:
+    """Return the sides of a cube, a box, or any other body, with or without markers."""
+    if "edge_mm" in table and "size_mm" in table:
+        raise table.wrong("size_mm", "a cube has edge_mm, a box size_mm, and no body both")
+    if "size_mm" in table:
+        width, height, depth = (each / 1000 for each in table.numbers("size_mm", 3, 1, 1000))
+        return box_sides(width, height, depth)
+    if "edge_mm" in table or not any("center_mm" in row for row in rows):
+        edge = table.number("edge_mm", 1, 1000) / 1000
+        return box_sides(edge, edge, edge)
+    cells = aruco_dictionary(table.text("dictionary")).markerSize + 2
+    border = marker / 2 * (1 + 2 * BORDER_CELLS / cells)
+    sides = []
+    for row in rows:
+        name = row.line("name")
+        if not name or "/" in name:
+            raise row.unlike("name", "a name without /")
+        sides.append(read_side(row, name, border))
+    names = [side.name for side in sides]
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise table.wrong("face", f"two have the name {twice[0]!r}; each must differ")
+    if pair := shared_plane(sides):
+        raise table.wrong(
+            "face",
+            f"'{pair[0]}' and '{pair[1]}' lie in one plane: give one of them both markers, in "
+            "[[face.marker]] tables with marker_id and at_mm",
+        )
+    return tuple(sides)
+
+
+def _faces(
+    table: TomlTable, keys: tuple[str, ...], capacity: int, marker: float, sides: dict[str, Side]
+) -> tuple[Face, ...]:
+    """Return the markers of one [[face]] table with `keys`; a side that it places may be bare."""
+    table.only(*keys)
+    name = table.choice("name", sides)
+    role, icon = table.line("role", ""), table.choice("icon", ("", *ICON_COLOURS), "")
+    rows = table.rows("marker", *MARKER_KEYS)
+    if not rows and ("marker_id" in table or "center_mm" not in table):
+        rows = (table,)
+    faces = []
+    for number, row in enumerate(rows, 1):
+        roll = int(row.number("roll_deg", default=0))
+        if roll not in (0, 90, 180, 270):
+            raise row.unlike("roll_deg", "0, 90, 180 or 270")
+        x, y = (each / 1000 for each in row.numbers("at_mm", 2, -1000, 1000, default=(0.0, 0.0)))
+        corners = sides[name].square(marker, (x, y), roll)
+        if "corners_mm" in row:
+            corners = measured_corners(row, corners, marker)
+        marker_id = row.whole("marker_id", 0, capacity - 1)
+        title = name if len(rows) == 1 else f"{name}/{number}"
+        faces.append(Face(title, marker_id, corners, role, icon, roll, (x, y)))
+    return tuple(faces)
 
 
 MAX_DISTORTION = 0.02

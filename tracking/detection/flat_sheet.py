@@ -17,8 +17,9 @@ MAX_MISFIT = 0.1
 size to this share of the side. Three sides of a cube miss that by 0.29, of a dodecahedron by 0.13.
 """
 
-MIN_FOLD_COSINE = np.cos(np.deg2rad(20))
-"""Faces whose normals are closer than this are one side of a body."""
+MIN_FOLD_COSINE = np.cos(np.deg2rad(50))
+"""Faces whose normals are closer than this count as one side: those of an icosahedron, 42°
+apart, look nearly flat when it is whole."""
 
 SQUARE = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
 """A marker seen square on, in the order of `Observation.corners`, with a side of 1."""

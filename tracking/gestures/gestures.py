@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.cube.sides import SideDirections
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array
 from cubeling.tracking.geometry.state import CubeControls, CubeState
 from cubeling.tracking.gestures.detectors import DETECTORS
 from cubeling.tracking.gestures.stillness import StillnessDetector
-from cubeling.tracking.gestures.table import ALL_NORMALS, SIDE_NORMALS, TableEstimator, TablePlane
+from cubeling.tracking.gestures.table import TableEstimator, TablePlane
 
 MAX_REST_TILT = np.deg2rad(10.0)
 """A face that is tilted less than this lies on the table [rad] (M11)."""
@@ -39,6 +40,9 @@ MAX_SPEED_TO_START_RESTING, MAX_SPEED_TO_KEEP_RESTING = 0.02, 0.04
 
 TRAVEL_WINDOW_S = 0.2
 """Time over which this speed is measured (M11)."""
+
+MIN_FORWARD_COSINE = 0.8
+"""A body whose front looks up more than this has another forward direction."""
 
 MAX_GAP_S = 0.2
 """Poses further apart than this give no velocity."""
@@ -70,12 +74,12 @@ class CubeGestures:
     Parameters
     ----------
     cube
-        The cube; only its edge matters.
+        The cube, or any convex body; only its sides matter.
     """
 
     def __init__(self, cube: CubeModel) -> None:
-        self._edge = cube.edge
-        self._table_estimator = TableEstimator(cube.edge)
+        self._sides = SideDirections(cube.sides)
+        self._table_estimator = TableEstimator(self._sides)
         self._table: TablePlane | None = None
         self._stillness = StillnessDetector()
         self._detectors = {name: make() for name, make in DETECTORS.items()}
@@ -159,20 +163,20 @@ class CubeGestures:
         table_from_camera = se3.inverse(table.camera_from_table)
         table_from_cube = table_from_camera @ pose
         up = table_from_cube[1, :3]
-        cosine, top = max(zip((ALL_NORMALS @ up).tolist(), SIDE_NORMALS, strict=True))
+        names = self._sides.normals
+        cosine, top = max(zip((self._sides.all_normals @ up).tolist(), names, strict=True))
         tilt = _angle(cosine)
         # Hysteresis: between two faces the last one stays on top.
         if last_top is not None and tilt > MAX_TOP_TILT:
             top = last_top
         position = table_from_cube[[0, 2], 3]
-        angle = clockwise_angle(table_from_cube, top)
+        angle = clockwise_angle(table_from_cube, names[top])
         towards = (table_from_camera[:3, :3] @ TOWARDS_CAMERA)[[0, 2]]
         # Clockwise as seen from above, 0 towards the camera.
         heading = wrap_angle(angle - clockwise_angle_of(towards))
         height, spread = table.height(pose[:3, 3])
-        return _TablePose(
-            top, tilt, height - self._edge / 2, MIN_LIFT_M + spread, angle, heading, position
-        )
+        height -= float(self._sides.depths[list(names).index(top)])
+        return _TablePose(top, tilt, height, MIN_LIFT_M + spread, angle, heading, position)
 
     def _is_lifted(self, now: float, place: _TablePose) -> bool:
         """Whether the cube has been off the table, or tipped, for longer than an error lasts."""
@@ -215,18 +219,27 @@ def wrap_angle(angle: float) -> float:
     return float((angle + np.pi) % (2 * np.pi) - np.pi)
 
 
-def forward_side(top_face: str) -> str:
-    """Name of the side whose direction is the cube's heading.
+def forward_direction(top: Array) -> Array:
+    """Direction in the cube frame, (3,), that is the cube's heading where `top` is up, (3,).
 
-    >>> forward_side("top"), forward_side("front"), forward_side("back")
-    ('front', 'bottom', 'top')
+    That of `front`; of `bottom` when `front` is up, and of `top` when `back` is up.
+
+    >>> forward_direction(np.array([0.0, 1.0, 0.0])).tolist()
+    [0.0, 0.0, 1.0]
+    >>> forward_direction(np.array([0.0, 0.0, 1.0])).tolist()
+    [0.0, -1.0, 0.0]
     """
-    return {"front": "bottom", "back": "top"}.get(top_face, "front")
+    if abs(top[2]) < MIN_FORWARD_COSINE:
+        return np.array([0.0, 0.0, 1.0])
+    return np.array([0.0, -np.sign(top[2]), 0.0])
 
 
-def clockwise_angle(table_from_cube: Array, top_face: str) -> float:
-    """Direction of the forward side from +z of the table [rad], clockwise seen from above."""
-    forward = table_from_cube[:3, :3] @ SIDE_NORMALS[forward_side(top_face)]
+def clockwise_angle(table_from_cube: Array, top: Array) -> float:
+    """Direction of the forward side from +z of the table [rad], clockwise seen from above.
+
+    `top` is the direction in the cube frame that is up, (3,).
+    """
+    forward = table_from_cube[:3, :3] @ forward_direction(top)
     return float(np.arctan2(-forward[0], forward[2]))
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cubeling.tracking.cube.model import FACE_AXES
+from cubeling.tracking.cube.sides import FACE_AXES, SideDirections
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array
 
@@ -57,28 +57,27 @@ class RestingFoot:
 SIDE_NORMALS = {name: np.cross(*axes).astype(np.float64) for name, axes in FACE_AXES.items()}
 """Outward normals of the six sides in the cube frame, whether or not they carry a marker."""
 
-ALL_NORMALS = np.stack(list(SIDE_NORMALS.values()))
-"""All of them, (6, 3)."""
 
-
-def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> RestingFoot | None:
+def rest_of(
+    camera_from_cube: Array, sides: SideDirections, up: Array | None = None
+) -> RestingFoot | None:
     """Return where a resting cube stands; None where no side of it can be up.
 
     Without a table (`up` is None) only sides that face the camera can be up.
     """
     rotation, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
-    normals = ALL_NORMALS @ rotation.T
+    normals = sides.all_normals @ rotation.T
     # Rows are normals: the product with the transpose turns all of them at once.
     cosines = normals @ (PRIOR_UP if up is None else up)
     if up is None:
-        tops = centre + normals * (edge / 2)
+        tops = centre + normals * sides.heights[:, None]
         # −0.1: a side seen edge-on counts as facing, as noise tilts it either way.
         facing = -np.einsum("ij,ij->i", normals, tops) > -0.1 * np.linalg.norm(tops, axis=1)
         cosines = np.where(facing, cosines, -1)
     best = int(np.argmax(cosines))
     if cosines[best] < MIN_UP_COSINE:
         return None
-    return RestingFoot(centre - normals[best] * (edge / 2), normals[best])
+    return RestingFoot(centre - normals[best] * sides.depths[best], normals[best])
 
 
 class TablePlane:
@@ -140,8 +139,8 @@ class TablePlane:
 class TableEstimator:
     """Estimates the table, and replaces it when it changes, by the rule at the top of this file."""
 
-    def __init__(self, edge: float) -> None:
-        self._edge = edge
+    def __init__(self, sides: SideDirections) -> None:
+        self._sides = sides
         self.table: TablePlane | None = None
         self._provisional = False
         self._alternative: TablePlane | None = None
@@ -151,7 +150,7 @@ class TableEstimator:
     def learn(self, camera_from_cube: Array, firm: bool, seconds: float) -> None:
         """Add one frame in which the cube keeps still, `seconds` after the last such frame."""
         if self.table is not None:
-            rest = rest_of(camera_from_cube, self._edge, self.table.up)
+            rest = rest_of(camera_from_cube, self._sides, self.table.up)
             if rest is not None and self.table.agrees(rest):
                 if firm or self._provisional:
                     self.table.learn(rest, seconds)
@@ -162,7 +161,7 @@ class TableEstimator:
         self._gather(camera_from_cube, firm, seconds)
 
     def _gather(self, camera_from_cube: Array, firm: bool, seconds: float) -> None:
-        rest = rest_of(camera_from_cube, self._edge)
+        rest = rest_of(camera_from_cube, self._sides)
         if rest is None:
             return
         if self._alternative is None or not self._alternative.agrees(rest):

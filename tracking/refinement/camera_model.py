@@ -7,6 +7,7 @@ import numpy as np
 
 from cubeling.tracking.geometry.arrays import Array, Floats
 from cubeling.tracking.refinement.photometry.photometric_fit import Alignment
+from cubeling.tracking.refinement.readout import ReadoutEstimator
 
 FIRST_EXPOSURE_S, MAX_EXPOSURE_S = 0.010, 0.05
 """Exposure that is assumed before it is measured, that of a webcam indoors, and the longest."""
@@ -47,6 +48,9 @@ class CameraModel:
     worth_studying: bool
     """Whether a sharp frame is worth being aligned to learn more."""
 
+    readout: float = 0.0
+    """Time that a rolling shutter takes from the first row to the last [s]; 0 while unknown."""
+
 
 @dataclass(frozen=True)
 class BlurObservation:
@@ -76,6 +80,7 @@ class CameraModelEstimator:
     def __init__(self) -> None:
         self.exposure = ExposureEstimator()
         self.tone_curve = ToneCurve()
+        self.readout = ReadoutEstimator()
         self._studies = 0
 
     @property
@@ -87,6 +92,7 @@ class CameraModelEstimator:
             self.exposure.known,
             self.tone_curve.table,
             not known and self._studies < MAX_STUDIES,
+            self.readout.seconds,
         )
 
     def learn(self, blur: BlurObservation | None, studied: bool) -> None:

@@ -5,6 +5,7 @@ from typing import Literal
 
 import numpy as np
 
+from cubeling.tracking.cube.model import side_of
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array
 from cubeling.tracking.refinement.edges.edge_fit import FittedEdges
@@ -66,6 +67,11 @@ class Candidate:
 
     edges: FittedEdges | None = None
     """The edges that the pose rests on; None where it rests on others."""
+
+    @property
+    def lone(self) -> bool:
+        """Whether all its markers lie on one side of the cube, which may lean either way."""
+        return len({side_of(face) for face in self.faces}) == 1
 
     @property
     def rank(self) -> tuple[bool, bool, float, float]:

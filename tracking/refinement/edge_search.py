@@ -76,10 +76,14 @@ class EdgeSearch:
         self._footprint = Footprint(cube, projection)
 
     def match(
-        self, patch: Patch, start: Array, blur_motion: BlurMotion = at_rest
+        self,
+        patch: Patch,
+        start: Array,
+        blur_motion: BlurMotion = at_rest,
+        readout_share: float = 0.0,
     ) -> EdgeMatch | None:
         """Refine a pose as `EdgeRefiner.refine` does, and tell whether it is the cube's."""
-        found = self._refiner.refine(patch, start, blur_motion)
+        found = self._refiner.refine(patch, start, blur_motion, readout_share)
         if found is None:
             return None
         reading = CellReading({})
@@ -90,10 +94,14 @@ class EdgeSearch:
         return EdgeMatch(found, covariance, reading, rigid, rigid and _prove(found, reading))
 
     def search(
-        self, patch: Patch, start: Array, blur_motion: BlurMotion = at_rest
+        self,
+        patch: Patch,
+        start: Array,
+        blur_motion: BlurMotion = at_rest,
+        readout_share: float = 0.0,
     ) -> Candidate | None:
         """Refine a pose as `match` does; None where the edges do not prove that it is the cube."""
-        match = self.match(patch, start, blur_motion)
+        match = self.match(patch, start, blur_motion, readout_share)
         if match is None or not match.proved:
             return None
         found, reading = match.refinement, match.reading

@@ -23,10 +23,9 @@ class Footprint:
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._projection = projection
         self._focal_px = float(projection.matrix[0, 0])
-        signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-        corners = np.array(signs, np.float64) * cube.edge / 2
+        corners = cube.vertices
         markers = [face.corners for face in cube.faces]
-        outside = np.abs(np.concatenate(markers)).max() > cube.edge / 2
+        outside = np.abs(np.concatenate(markers)).max() > np.abs(corners).max()
         self._corners = np.concatenate([corners, *markers]) if outside else corners
         self.half_edge = cube.edge / 2
         """Half the edge of the cube [m]."""

@@ -17,6 +17,8 @@ SCHEME_MODULES = {
     "camera": "cubeling.tracking.sources.camera",
     "http": "cubeling.tracking.sources.http",
     "https": "cubeling.tracking.sources.http",
+    "rtsp": "cubeling.tracking.sources.rtsp",
+    "rtsps": "cubeling.tracking.sources.rtsp",
     "synthetic": "cubeling.tracking.synthetic.source",
 }
 """Module that opens the URIs of a scheme."""
@@ -37,7 +39,7 @@ def open_source(
     ----------
     uri
         "camera:0", "camera:/dev/video0", "camera:0?exposure=8&focus=30&lock=0", "take.mp4",
-        "session.mcap", "http://phone:8080/video", or "synthetic:NAME".
+        "session.mcap", "http://phone:8080/video", "rtsp://camera/live", or "synthetic:NAME".
     size
         Width and height to request from a camera [px]; other sources ignore it.
     clock

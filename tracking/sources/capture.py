@@ -52,16 +52,17 @@ class _DeviceReader:
 class CaptureThread:
     """Reads a device in a thread and keeps the newest image.
 
-    The thread reopens the device after a loss if an image ever arrived. If the driver does not
+    The thread reopens the device after a loss if an image ever arrived. The same image again and
+    again for `frozen_after` [s] is a loss, too. If the driver does not
     return for `STUCK_TIMEOUT_S`, another thread takes over; if the first one ever returns, it
     closes its device and ends.
     """
 
     def __init__(
-        self, connect: Callable[[], Device], name: str, clock: Clock, detect_frozen: bool
+        self, connect: Callable[[], Device], name: str, clock: Clock, frozen_after: float
     ) -> None:
         self._connect, self._name, self._clock = connect, name, clock
-        self._detect_frozen = detect_frozen
+        self._frozen_after = frozen_after
         self._changed = threading.Condition()
         self._stopped = threading.Event()
         self._newest: CapturedImage | None = None
@@ -181,17 +182,22 @@ class CaptureThread:
                 self.last_arrival = self._clock()
 
     def _read(self, reader: _DeviceReader, device: Device) -> None:
-        last_new, timeout, any_new = self._clock(), FIRST_IMAGE_TIMEOUT_S, False
+        if not self.frozen:  # else the first image would count as new, though it is the frozen one
+            self._last = None
+        last_new, any_new = self._clock(), False
         while self._is_current(reader):
             began = reader.blocked_since = self._clock()
             image = device.read()
             now = self._clock()
             reader.blocked_since = None
-            if image is not None and not (self._detect_frozen and _same(image, self._last)):
-                last_new, timeout, any_new, self._last = now, SILENCE_S, True, image
+            patience = self._frozen_after if image is not None else SILENCE_S
+            if image is not None and not _same(image, self._last):
+                last_new, any_new, self._last = now, True, image
             # Before the first image a camera may take its time; the caller has a timeout of its
             # own.
-            elif self.delivered and now - last_new >= timeout:
+            elif self.delivered and now - last_new >= (
+                patience if any_new else FIRST_IMAGE_TIMEOUT_S
+            ):
                 state: SourceState = "lost" if image is None else "frozen"
                 self._set_lost(reader, state, "", last_new)
                 return

@@ -2,14 +2,20 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 
 import av
 import cv2
 import numpy as np
 from av.codec.context import Flags
+from av.sidedata.sidedata import Type as SideDataType
+from av.video.stream import VideoStream
 
 from cubeling.tracking.geometry.arrays import Image
 from cubeling.tracking.sources.device import decode_jpeg
+
+MAX_PIXEL_SHAPE = 4.0
+"""Pixels are at most so many times wider than high, or the reverse: more is a broken header."""
 
 START_CODE = b"\x00\x00\x01"
 """Begins every NAL unit of an Annex B stream (ITU-T H.264, annex B)."""
@@ -48,8 +54,10 @@ class BrokenFileError(Exception):
     """A file cannot be read any further; the message completes the sentence "the file ..."."""
 
 
-def bgr_of(frame: av.VideoFrame) -> Image:
-    """Convert a decoded video frame to BGR, upright.
+def bgr_of(frame: av.VideoFrame, pixel_shape: float = 1.0) -> Image:
+    """Convert a decoded video frame to BGR, upright, not mirrored, and with square pixels.
+
+    `pixel_shape` is the width of a pixel ÷ its height, as `pixel_shape_of` returns it.
 
     4:2:0 of even size, which nearly every video has, goes through OpenCV's integer arithmetic
     (BT.601, studio range), which is the same on every processor; FFmpeg's depends on SIMD.
@@ -58,9 +66,34 @@ def bgr_of(frame: av.VideoFrame) -> Image:
         image = cv2.cvtColor(frame.to_ndarray(), cv2.COLOR_YUV2BGR_I420)
     else:
         image = frame.to_ndarray(format="bgr24")
-    # A phone held upright stores its images rotated, with a note about the rotation.
-    quarter_turns = round(frame.rotation / 90) % 4
-    return np.ascontiguousarray(np.rot90(image, quarter_turns), np.uint8)
+    if pixel_shape != 1:
+        # The shorter side of the pixels grows, so that nothing is lost.
+        size = round(frame.width * max(pixel_shape, 1)), round(frame.height / min(pixel_shape, 1))
+        image = cv2.resize(image, size, interpolation=cv2.INTER_LINEAR_EXACT)
+    pixels = np.asarray(image, np.uint8)
+    for data in frame.side_data:
+        if data.type == SideDataType.DISPLAYMATRIX:
+            return _displayed(pixels, bytes(data))
+    return pixels
+
+
+def pixel_shape_of(stream: VideoStream) -> float:
+    """Width of a pixel ÷ its height, as the file states it; 1 where it states none or nonsense."""
+    ratio = stream.sample_aspect_ratio or Fraction(1)
+    return float(ratio) if 1 / MAX_PIXEL_SHAPE <= ratio <= MAX_PIXEL_SHAPE else 1.0
+
+
+def _displayed(image: Image, matrix: bytes) -> Image:
+    """Turn and mirror an image by quarters, as its display matrix says (`libavutil/display.h`).
+
+    A phone held upright stores its images rotated, one that films its owner perhaps mirrored.
+    """
+    # Rows: what the stored x and y become, each along the displayed x and y, and a third column.
+    (xx, xy, _), (yx, yy, _), _ = np.frombuffer(matrix, np.int32).reshape(3, 3).tolist()
+    if abs(xy) + abs(yx) > abs(xx) + abs(yy):
+        image, xx, yy = image.transpose(1, 0, 2), yx, xy
+    steps = (-1 if yy < 0 else 1), (-1 if xx < 0 else 1)
+    return np.ascontiguousarray(image[:: steps[0], :: steps[1]], np.uint8)
 
 
 def decode(images: Iterator[EncodedImage]) -> Iterator[tuple[EncodedImage, Image]]:

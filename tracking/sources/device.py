@@ -175,3 +175,24 @@ def decode_jpeg(data: bytes) -> Image | None:
         return None
     image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
     return None if image is None else np.asarray(image, np.uint8)
+
+
+UNDECODED_BGR = 128
+"""Grey value of the blocks of a JPEG for which there are no data, in all colours."""
+
+FILLER = b"\x55" * 64
+"""Bytes that libjpeg reads as further blocks where those of an image are missing."""
+
+
+def is_cut_short(data: bytes, image: Image) -> bool:
+    """Return whether data of a JPEG are missing before its end, by what was decoded from it.
+
+    libjpeg fills the rest with grey. Most images show by a corner that they are whole; one that is
+    grey there is decoded again with more data, which a whole image ignores.
+    """
+    corners = image[[0, 0, -1, -1], [0, -1, 0, -1]]
+    if not (corners == UNDECODED_BGR).all(axis=1).any():
+        return False
+    end = data.rfind(b"\xff\xd9")
+    longer = decode_jpeg(data[:end] + FILLER + data[end:])
+    return not np.array_equal(image, longer) if longer is not None else True

@@ -4,8 +4,22 @@ import base64
 import contextlib
 import socket
 import time
-from http.client import HTTPConnection, HTTPException, HTTPResponse, HTTPSConnection
+from http.client import (
+    BadStatusLine,
+    HTTPConnection,
+    HTTPException,
+    HTTPResponse,
+    HTTPSConnection,
+)
+from urllib.error import URLError
 from urllib.parse import SplitResult, unquote, urlsplit
+from urllib.request import (
+    AbstractDigestAuthHandler,
+    HTTPPasswordMgr,
+    Request,
+    parse_http_list,
+    parse_keqv_list,
+)
 
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.sources.device import Clock, DeviceSetting
@@ -17,6 +31,13 @@ READ_SIZE_BYTES = 64 * 1024
 SOCKET_TIMEOUT_S = 3.0
 """A silent connection is closed and opened again after this time. A wireless network may stall for
 a second, after which the stream continues by itself."""
+
+FROZEN_AFTER_S = 3.0
+"""Identical images for this time are a frozen camera's. Servers repeat those of a slow camera, but
+no sensor delivers the same bytes twice."""
+
+UNNAMED_KINDS = ("application/octet-stream", "application/x-octet-stream")
+"""Content types of servers that do not say what they send."""
 
 
 class HttpSource(LiveSource):
@@ -40,8 +61,9 @@ class HttpSource(LiveSource):
             raise TrackingError(f"'{url}' is not a web address: {error}") from error
         if not address.hostname:
             raise TrackingError(f"'{url}' names no host; write http://HOST:PORT/PATH")
-        # A phone that films a wall may send identical bytes again and again.
-        super().__init__(lambda: _MjpegStream(address, name), name, clock, detect_frozen=False)
+        super().__init__(
+            lambda: _MjpegStream(address, name), name, clock, frozen_after=FROZEN_AFTER_S
+        )
 
 
 def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> HttpSource:
@@ -58,17 +80,23 @@ class _MjpegStream:
 
     def __init__(self, address: SplitResult, name: str) -> None:
         self._name = name
-        kind = HTTPSConnection if address.scheme == "https" else HTTPConnection
-        self._connection = kind(address.hostname or "", address.port, timeout=SOCKET_TIMEOUT_S)
         try:
-            self._connection.connect()
-            self._socket: socket.socket = self._connection.sock
-            target = (address.path or "/") + (f"?{address.query}" if address.query else "")
-            self._connection.request("GET", target, headers=_headers(address))
-            self._response = self._connection.getresponse()
-            self._parser = MultipartParser(_boundary(self._response, name))
+            self._get(address, _basic_authorization(address))
+            challenge = self._response.headers.get("WWW-Authenticate", "")
+            refused = self._response.status == 401 and address.username is not None
+            if refused and challenge.lower().startswith("digest"):
+                self.close()
+                self._get(address, _digest_authorization(address, challenge, name))
+            self._parser = MultipartParser(_boundary(self._response, address, name))
         except (OSError, HTTPException) as error:
             self._connection.close()
+            # A server that says nothing at all has "no status", too.
+            if isinstance(error, BadStatusLine) and not isinstance(error, OSError):
+                line = str(error.args[0]).strip()[:60]
+                raise TrackingError(
+                    f"{name} does not answer in HTTP: its first line is '{line}', "
+                    "not a status such as 'HTTP/1.1 200 OK'"
+                ) from error
             raise TrackingError(
                 f"cannot connect to {name} ({_reason(error)}): "
                 "is the app on the phone running, and is it in the same network?"
@@ -76,6 +104,14 @@ class _MjpegStream:
         except TrackingError:
             self.close()
             raise
+
+    def _get(self, address: SplitResult, headers: dict[str, str]) -> None:
+        kind = HTTPSConnection if address.scheme == "https" else HTTPConnection
+        self._connection = kind(address.hostname or "", address.port, timeout=SOCKET_TIMEOUT_S)
+        self._connection.connect()
+        self._socket: socket.socket = self._connection.sock
+        self._connection.request("GET", _target(address), headers=headers)
+        self._response = self._connection.getresponse()
 
     def read(self) -> bytes:
         """Wait for the next JPEG; the newest one if several have arrived."""
@@ -108,16 +144,49 @@ class _MjpegStream:
         self._connection.close()
 
 
-def _headers(address: SplitResult) -> dict[str, str]:
+def _target(address: SplitResult) -> str:
+    return (address.path or "/") + (f"?{address.query}" if address.query else "")
+
+
+def _basic_authorization(address: SplitResult) -> dict[str, str]:
     if address.username is None:
         return {}
     secret = f"{unquote(address.username)}:{unquote(address.password or '')}".encode()
     return {"Authorization": f"Basic {base64.b64encode(secret).decode()}"}
 
 
-def _boundary(response: HTTPResponse, name: str) -> str:
-    """Check that the response is a stream of parts; return their boundary."""
+def _digest_authorization(address: SplitResult, challenge: str, name: str) -> dict[str, str]:
+    """Answer the challenge of a server that wants no password in clear text (RFC 7616)."""
+    passwords = HTTPPasswordMgr()
+    handler = AbstractDigestAuthHandler(passwords)
+    request = Request(f"{address.scheme}://{address.hostname}{_target(address)}")
+    values = parse_keqv_list(parse_http_list(challenge.partition(" ")[2]))
+    if "qop" in values:
+        values["qop"] = values["qop"].replace(" ", "")  # the handler splits at commas alone
+    passwords.add_password(
+        values.get("realm", ""),
+        request.full_url,
+        unquote(address.username or ""),
+        unquote(address.password or ""),
+    )
+    try:
+        answer = handler.get_authorization(request, values)
+    except (ValueError, URLError):  # an algorithm, and a quality of protection, that it lacks
+        answer = None
+    if not answer:
+        raise TrackingError(
+            f"{name} asks for the password in a way that is not supported "
+            f"(digest, {values.get('algorithm', 'MD5')}, {values.get('qop', 'no qop')}): "
+            "choose basic authentication or none in the settings of the camera"
+        )
+    return {"Authorization": f"Digest {answer}"}
+
+
+def _boundary(response: HTTPResponse, address: SplitResult, name: str) -> str:
+    """Check that the response is a stream of parts; return their boundary, "" if it is not told."""
     if response.status == 401:
+        if address.username is not None:
+            raise TrackingError(f"{name} refuses this name and password")
         raise TrackingError(f"{name} needs a password: write http://NAME:PASSWORD@HOST:PORT/PATH")
     if response.status in (301, 302, 303, 307, 308):
         raise TrackingError(f"{name} has moved: open {response.headers['Location']} instead")
@@ -126,12 +195,12 @@ def _boundary(response: HTTPResponse, name: str) -> str:
         raise TrackingError(f"{name} answers {reason}: check the address")
     kind = response.headers.get_content_type()
     boundary = response.headers.get_param("boundary")
-    if not kind.startswith("multipart/") or not isinstance(boundary, str) or not boundary:
-        raise TrackingError(
-            f"{name} is {kind}, not a stream of JPEG images: "
-            "give the address of the stream itself, such as http://PHONE:8080/video"
-        )
-    return boundary
+    if kind.startswith("multipart/") or kind in UNNAMED_KINDS:
+        return boundary if isinstance(boundary, str) else ""
+    what = "a single JPEG image" if kind == "image/jpeg" else f"{kind}, not a stream of JPEG images"
+    raise TrackingError(
+        f"{name} is {what}: give the address of the stream itself, such as http://PHONE:8080/video"
+    )
 
 
 def _reason(error: Exception) -> str:

@@ -26,6 +26,7 @@ from cubeling.tracking.sources.device import (
     Health,
     SourceState,
     decode_jpeg,
+    is_cut_short,
     jpeg_size,
 )
 
@@ -41,8 +42,8 @@ class LiveSource(FrameSource):
 
     Opening waits for the first frame. `connect` opens the device, in the capture thread, so a
     driver that blocks does not block the caller; it is called again after each loss:
-    `base.LiveFrames` describes what the caller sees. With `detect_frozen`, identical images for
-    `SILENCE_S` count as a loss, and so do images that cannot be used, as they are broken or have
+    `base.LiveFrames` describes what the caller sees. Identical images for `frozen_after` [s] count
+    as a loss, and so do images that cannot be used for `SILENCE_S`, as they are broken or have
     another size than the first one. Messages give the source's `name`: "camera 0".
 
     Raises
@@ -61,7 +62,7 @@ class LiveSource(FrameSource):
         name: str,
         clock: Clock = time.monotonic,
         *,
-        detect_frozen: bool = True,
+        frozen_after: float = SILENCE_S,
     ) -> None:
         self._name = name
         self._clock = clock
@@ -73,7 +74,7 @@ class LiveSource(FrameSource):
         self._unusable_since: float | None = None
         self._unusable_text = ""
         self._latencies: deque[float] = deque(maxlen=RECENT_IMAGES)
-        self._capture = CaptureThread(connect, name, clock, detect_frozen)
+        self._capture = CaptureThread(connect, name, clock, frozen_after)
         try:
             self._first: Frame | None = self._wait_for_first()
         except BaseException:
@@ -189,6 +190,8 @@ class LiveSource(FrameSource):
             # number is not decoded at all.
             other = expected and found and math.prod(found) != math.prod(expected)
             image = None if other else decode_jpeg(data)
+            if image is not None and is_cut_short(data, image):
+                image = None
         else:
             found, image = None, data
         if image is not None:

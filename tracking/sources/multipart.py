@@ -3,6 +3,9 @@
 MAX_PART_BYTES = 32 * 2**20
 """Larger parts are not images."""
 
+MAX_PREAMBLE_BYTES = 64 * 1024
+"""A boundary that the header does not tell begins within the first bytes."""
+
 
 class MultipartError(Exception):
     """The stream is not multipart; the message says why."""
@@ -12,7 +15,8 @@ class MultipartParser:
     r"""Splits a `multipart/x-mixed-replace` stream into its parts (RFC 2046, section 5.1).
 
     Accepts what cameras send against the standard: boundaries that include their dashes in the
-    header, parts with and without Content-Length, lines that end with LF alone.
+    header, parts with and without Content-Length, lines that end with LF alone. A boundary that the
+    header does not tell, "", is that of the first line that begins with dashes.
 
     >>> parser = MultipartParser("frame")
     >>> parser.feed(b"--frame\r\nContent-Length: 2\r\n\r\nab\r\n--fra")
@@ -25,7 +29,7 @@ class MultipartParser:
 
     def __init__(self, boundary: str) -> None:
         core = boundary.lstrip("-") or boundary
-        self._delimiter = b"--" + core.encode("latin-1")
+        self._delimiter = b"--" + core.encode("latin-1") if core else b""
         self._buffer = bytearray()
         self._searched = 0
         self._in_part = False
@@ -38,7 +42,7 @@ class MultipartParser:
         Raises
         ------
         MultipartError
-            A part is larger than an image can be.
+            A part is larger than an image can be, or there are no parts.
         """
         self._buffer += data
         bodies = []
@@ -56,8 +60,10 @@ class MultipartParser:
 
     def _enter_part(self) -> bool:
         """Drop everything up to the next delimiter; return whether it has been received."""
+        if not self._delimiter:
+            self._delimiter = self._first_line_with_dashes()
         start = self._find_delimiter()
-        if start < 0:
+        if not self._delimiter or start < 0:
             return False
         after = start + len(self._delimiter)
         if len(self._buffer) < after + 2:
@@ -89,6 +95,15 @@ class MultipartParser:
         del self._buffer[:end]
         self._searched = 0
         return body
+
+    def _first_line_with_dashes(self) -> bytes:
+        """Return the first whole line that begins with two dashes; b"" while there is none."""
+        lines = bytes(self._buffer[:MAX_PREAMBLE_BYTES]).split(b"\n")
+        dashed = (line.rstrip(b"\r") for line in lines[:-1] if line.startswith(b"--"))
+        found = next(dashed, b"")
+        if not found and len(self._buffer) >= MAX_PREAMBLE_BYTES:
+            raise MultipartError("is not a stream of JPEG images: nothing separates its parts")
+        return found
 
     def _find_delimiter(self) -> int:
         found = self._buffer.find(self._delimiter, self._searched)

@@ -10,7 +10,7 @@ from cubeling.files import FileKind
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.sources.base import StoredFrames, Timeline, readable_frames
-from cubeling.tracking.sources.decoding import bgr_of
+from cubeling.tracking.sources.decoding import bgr_of, pixel_shape_of
 from cubeling.tracking.sources.device import Clock
 
 VIDEO_FILE = FileKind(
@@ -26,7 +26,8 @@ VIDEO_FILE = FileKind(
 class VideoSource(StoredFrames):
     """A video file that FFmpeg can read: mp4, mkv, avi, webm.
 
-    Timestamps count from the first frame.
+    Timestamps count from the first frame. Frames are upright and have square pixels, as the file
+    says that they are to be displayed.
 
     Raises
     ------
@@ -62,6 +63,7 @@ class VideoSource(StoredFrames):
         timeline, start, count = Timeline(), None, 0
         stream = container.streams.video[0]
         # AVI has timestamps of packets only, and B frames are decoded in another order.
+        pixel_shape = pixel_shape_of(stream)
         untimed = container.format.name == "avi" and stream.codec_context.has_b_frames
         try:
             for picture in container.decode(stream):
@@ -71,7 +73,7 @@ class VideoSource(StoredFrames):
                     # A ratio of integers, divided once, so that no error accumulates.
                     start = picture.pts if start is None else start
                     seconds = float((picture.pts - start) * picture.time_base)
-                yield Frame(bgr_of(picture), timeline.stamp(seconds), count)
+                yield Frame(bgr_of(picture, pixel_shape), timeline.stamp(seconds), count)
                 count += 1
         except av.FFmpegError as error:
             read = readable_frames(count)

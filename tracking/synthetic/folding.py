@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cubeling.tracking.cube.model import CubeModel, face_corners
+from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array
 
@@ -28,7 +28,7 @@ def face_poses(cube: CubeModel) -> dict[str, tuple[Array, Array]]:
     """Return rotation (3, 3) and centre (3,) of each face that is off its nominal pose."""
     found = {}
     for face in cube.faces:
-        ideal = face_corners(face.name, face.roll_deg, cube.marker_size, cube.edge)
+        ideal = cube.designed_corners(face)
         if np.abs(face.corners - ideal).max() > 1e-9:
             nominal, actual = _axes(ideal), _axes(face.corners)
             found[face.name] = actual @ nominal.T, face.corners.mean(axis=0)

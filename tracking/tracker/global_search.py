@@ -289,7 +289,7 @@ class GlobalDetector:
     def _try_blur(self, search: Search, markers: FrameMarkers) -> Search:
         """Plan to align the blurred image at poses that rest on corners alone."""
         # A single face that is blurred does not tell its lean.
-        starts = tuple(each.camera_from_cube for each in search.found if len(each.faces) > 1)
+        starts = tuple(each.camera_from_cube for each in search.found if not each.lone)
         if not starts or any(each.certain for each in search.found):
             return search
         return search.try_first([self._alignment(starts, 0, None, ())])

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.cube.model import CubeModel, side_of
 from cubeling.tracking.detection.markers import Observation
 from cubeling.tracking.detection.pose_from_points import CornerPose, CornerPoseSolver
 from cubeling.tracking.geometry import se3
@@ -122,7 +122,7 @@ class MarkerPoses:
 
     def mirror(self, solution: CornerPose, found: Sequence[Candidate]) -> list[CornerPose]:
         """Propose the other lean of a single face that was found, the best first; else nothing."""
-        if not found or not found[0].certain or len(found[0].faces) != 1:
+        if not found or not found[0].certain or not found[0].lone:
             return []
         start = self._edges.mirrored_pose(found[0])
         if any(_near(each.camera_from_cube, start) for each in found):
@@ -151,7 +151,7 @@ class MarkerPoses:
             for face, share in refined.face_support.items()
             if share > MIN_FACE_SUPPORT and match.reading.agreement.get(face, 0.0) > MIN_AGREEMENT
         )
-        if len(faces) < 2 or refined.sharpness < MIN_SHARPNESS:
+        if len({side_of(face) for face in faces}) < 2 or refined.sharpness < MIN_SHARPNESS:
             return None
         if match.reading.best < MIN_BEST_AGREEMENT:
             return None
@@ -202,7 +202,7 @@ class MarkerPoses:
             return []
         error = self._solver.error(pose, solution.observations)
         candidate = replace(match.candidate, error=error)
-        if len(candidate.faces) == 1:
+        if candidate.lone:
             smeared = MAX_LONE_BLUR_CELLS * self._footprint.pixels_per_cell(pose)
             blurred = candidate.blur > max(MAX_LONE_BLUR_PX, smeared)
             # Another face may be found than the one that the pose was measured on.
@@ -244,7 +244,7 @@ class MarkerPoses:
         Beside two faces that are found only a near one contradicts: a far one is another cube's.
         """
         return any(
-            self._contradicts(pose, each, lone=len(faces) == 1)
+            self._contradicts(pose, each, lone=len({side_of(face) for face in faces}) == 1)
             for each in observations
             if each.face.name not in faces
         )

@@ -81,6 +81,11 @@ class CubeTracker:
         """Whether the search of a picture goes on in the next call."""
         return self._search is not None
 
+    @property
+    def readout(self) -> float:
+        """Time that a rolling shutter takes from the first row to the last [s]; 0 if not known."""
+        return self._camera.model.readout
+
     @on_one_thread
     def update(self, frame: Frame, markers: FrameMarkers | None = None) -> CubeState:
         """Find the cube in the next frame, whose `markers` several trackers may share.
@@ -138,6 +143,8 @@ class CubeTracker:
         if found.edges is not None:
             self._lens.learn(pose, found.edges)
         velocity, acceleration = track.motion(pose, noise, now)
+        if found.edges is not None:
+            self._camera.readout.learn(found.edges, velocity, self.intrinsics.size[1])
         systematic = by_corners + by_lens
         track = track.add(TrackedPose(pose, velocity, noise, now, acceleration, systematic))
         self._past = replace(verdict.past, track=track, jump=None, frames_lost=0)

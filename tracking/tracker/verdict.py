@@ -81,7 +81,7 @@ class FollowedPoseJudge:
         pose can become the other. `image` is (H, W, 3) BGR, `tone` the light for each grey value.
         """
         settled = replace(past, tilt_settled=True)
-        if len(candidate.faces) != 1:
+        if not candidate.lone:
             return Verdict(candidate, "", settled)
         unsettled = replace(past, tilt_settled=False)
         ambiguous = Verdict(candidate, "ambiguous", past)
@@ -166,7 +166,7 @@ def _fits(candidate: Candidate, prediction: Prediction | None) -> bool:
     return (
         prediction is None
         or candidate.certain
-        or len(candidate.faces) > 1
+        or not candidate.lone
         or prediction.covers(candidate.camera_from_cube)
     )
 
@@ -178,7 +178,7 @@ def _choose(
     best, *others = sorted(candidates, key=lambda each: each.rank)
     if not best.certain:
         return best, "blurred" if best.blurred else "unproved"
-    if len(best.faces) == 1:
+    if best.lone:
         velocity = track.motion(best.camera_from_cube, best.covariance, now)[0]
         if np.linalg.norm(velocity[:3]) > MAX_LONE_FACE_SPEED:
             return best, "blurred"

@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from cubeling.tracking.cube.model import CubeModel, Face
+from cubeling.tracking.cube.sides import Side
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from tests.bench.photographs.marker_corners import (
@@ -256,13 +257,53 @@ def body_model() -> tuple[CubeModel, Array]:
     # Every plane is equally far from the middle.
     rows = np.c_[normals, np.ones(len(found))]
     middle = np.linalg.lstsq(rows, (normals * centres).sum(axis=1), rcond=None)[0]
+    frames = found.copy()
+    frames[:, :3, 3] -= middle[:3]
+    sides = _sides(frames, float(middle[3]))
     faces = tuple(
-        Face(
-            f"face {marker}",
-            marker,
-            square_points(SIDE) @ pose[:3, :3].T + pose[:3, 3] - middle[:3],
-        )
-        for marker, pose in zip(MARKERS, found, strict=True)
+        Face(side.name, marker, square_points(SIDE) @ pose[:3, :3].T + pose[:3, 3], at=at)
+        for marker, pose, (side, at) in zip(MARKERS, frames, sides, strict=False)
     )
-    model = CubeModel("dodecahedron", DICTIONARY, 2 * float(middle[3]), SIDE, faces)
+    body = tuple(side for side, _ in sides)
+    model = CubeModel("dodecahedron", DICTIONARY, 2 * float(middle[3]), SIDE, faces, body=body)
     return model, se3.pose(np.eye(3), middle[:3])
+
+
+def _sides(frames: Array, height: float) -> list[tuple[Side, tuple[float, float]]]:
+    """The twelve sides with the middles of their markers, by the frames of eleven markers.
+
+    The twelfth side is opposite to the one to which no other is parallel.
+    """
+    normals = frames[:, :3, 2]
+    alone = int(np.argmax((normals @ normals.T).min(axis=1)))
+    pen = frames[alone].copy()
+    pen[:3, 1:] *= -1
+    frames = np.concatenate([frames, pen[None]])
+    heights = np.einsum("ij,ij->i", frames[:, :3, 2], frames[:, :3, 3])
+    sides = []
+    for number, frame in enumerate(frames):
+        outline = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * height
+        others = [other for other in range(len(frames)) if other != number]
+        for other in others:
+            outline = _cut(outline, frame, frames[other, :3, 2], heights[other])
+        x, y = outline.mean(axis=0)
+        centred = frame.copy()
+        centred[:3, 3] += frame[:3, :2] @ (x, y)
+        name = f"face {(*MARKERS, 'of the pen')[number]}"
+        sides.append((Side(name, centred, outline - (x, y)), (-float(x), -float(y))))
+    return sides
+
+
+def _cut(outline: Array, frame: Array, normal: Array, height: float) -> Array:
+    """The part of an outline in the plane of a frame that is below another plane, (N, 2)."""
+    points = outline @ frame[:3, :2].T + frame[:3, 3]
+    above = points @ normal - height
+    kept = []
+    for number, here in enumerate(above):
+        there, after = above[number - 1], outline[number]
+        if (here > 0) != (there > 0):
+            share = there / (there - here)
+            kept.append(outline[number - 1] + share * (after - outline[number - 1]))
+        if here <= 0:
+            kept.append(after)
+    return np.array(kept)

@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.cube.sides import SideDirections, box_sides
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.state import CubeControls, CubeState
 from cubeling.tracking.gestures.gestures import CubeGestures
@@ -155,5 +156,5 @@ def test_a_moved_camera_is_noticed(moved: Callable[[], Array]) -> None:
 
 def test_a_side_that_faces_away_is_never_up() -> None:
     away = se3.pose(np.diag([1.0, -1.0, -1.0]), np.array([0, 0, 0.5]))
-    rest = rest_of(away, EDGE)
+    rest = rest_of(away, SideDirections(box_sides(EDGE, EDGE, EDGE)))
     assert rest is None or rest.up[2] < 0.2

@@ -8,7 +8,13 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.tracking.sources.camera_controls import brightness
-from cubeling.tracking.sources.device import MAX_IMAGE_PX, decode_jpeg, is_decodable, jpeg_size
+from cubeling.tracking.sources.device import (
+    MAX_IMAGE_PX,
+    decode_jpeg,
+    is_cut_short,
+    is_decodable,
+    jpeg_size,
+)
 from tests.tracking.sources.live import SIZE, claims, jpeg
 
 
@@ -48,3 +54,20 @@ def test_no_mutation_of_a_jpeg_raises(position, put, removed):
     jpeg_size(mutated)
     if is_decodable(mutated) and jpeg_size(mutated) == SIZE:
         decode_jpeg(mutated)
+
+
+@pytest.mark.parametrize("quality", [30, 95])
+@pytest.mark.parametrize("grey", [0, 128])
+def test_only_an_image_with_missing_data_is_cut_short(quality, grey):
+    """One that is grey at its corners, as libjpeg fills what is missing, is whole all the same."""
+    image = np.full((96, 128, 3), grey, np.uint8)
+    image[20:60] = np.random.default_rng(0).integers(0, 255, (40, 128, 3))
+    whole = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
+    decoded = decode_jpeg(whole)
+    assert decoded is not None
+    assert not is_cut_short(whole, decoded)
+    for share in (0.7, 0.95):
+        cut = whole[: int(share * len(whole))] + b"\xff\xd9"
+        decoded = decode_jpeg(cut)
+        assert decoded is not None
+        assert is_cut_short(cut, decoded)

@@ -1,8 +1,11 @@
 """Frames from videos and sessions: every complete frame, its time, and one-line errors."""
 
+import struct
 import sys
+from collections.abc import Callable
 from fractions import Fraction
 from types import ModuleType
+from typing import Any
 
 import av
 import cv2
@@ -247,10 +250,12 @@ def test_a_skip_decodes_only_what_later_frames_need(tmp_path, monkeypatch):
     assert len(decoded) == 1 + 2  # the first while opening, then 24 and 25
 
 
-def write_video(path, count=20, rate=25, **options):
+def write_video(path, count=20, rate=25, shape=None):
     with av.open(str(path), "w") as container:
         stream = container.add_stream("libx264", rate=rate)
         stream.width, stream.height, stream.pix_fmt = *SIZE, "yuv420p"
+        if shape:
+            stream.codec_context.sample_aspect_ratio = shape
         for number in range(count):
             frame = av.VideoFrame.from_ndarray(picture(number), format="bgr24")
             container.mux(stream.encode(frame))
@@ -275,6 +280,48 @@ def test_a_video_returns_its_frames_with_the_times_of_its_container(tmp_path, ki
         assert source.intrinsics is None
 
 
+@pytest.mark.parametrize(("shape", "size"), [("4/3", (213, 120)), ("3/4", (160, 160))])
+def test_a_video_of_pixels_that_are_not_square_is_stretched(tmp_path, shape, size):
+    path = write_video(tmp_path / "take.mp4", count=1, shape=Fraction(shape))
+    frames, _ = read(path)
+    expected = cv2.resize(picture(0), size)
+    assert frames[0].image.shape == expected.shape
+    assert np.abs(frames[0].image.astype(int) - expected).mean() < 3
+
+
+MATRICES: dict[str, tuple[tuple[int, int, int, int], Callable[[Any], Any]]] = {
+    "as it is": ((1, 0, 0, 1), lambda image: image),
+    "a quarter clockwise": ((0, 1, -1, 0), lambda image: np.rot90(image, -1)),
+    "upside down": ((-1, 0, 0, -1), lambda image: np.rot90(image, 2)),
+    "a quarter counter-clockwise": ((0, -1, 1, 0), np.rot90),
+    "mirrored": ((-1, 0, 0, 1), np.fliplr),
+    "mirrored upside down": ((1, 0, 0, -1), np.flipud),
+    "transposed": ((0, 1, 1, 0), lambda image: np.swapaxes(image, 0, 1)),
+    "mirrored, then a quarter clockwise": (
+        (0, -1, -1, 0),
+        lambda image: np.rot90(np.fliplr(image), -1),
+    ),
+}
+"""Display matrices (a, b, c, d) of ISO/IEC 14496-12, section 6.2.2, and what a player shows."""
+
+
+@pytest.mark.parametrize("name", MATRICES)
+def test_a_video_is_turned_and_mirrored_as_it_says(tmp_path, name):
+    path = write_video(tmp_path / "take.mp4", count=1)
+    numbers, shown = MATRICES[name]
+    identity, wanted = (
+        struct.pack(">9i", a << 16, b << 16, 0, c << 16, d << 16, 0, 0, 0, 1 << 30)
+        for a, b, c, d in ((1, 0, 0, 1), numbers)
+    )
+    head, mark, track = path.read_bytes().partition(b"tkhd")
+    assert identity in track
+    path.write_bytes(head + mark + track.replace(identity, wanted, 1))
+    frames, _ = read(path)
+    expected = shown(picture(0))
+    assert frames[0].image.shape == expected.shape
+    assert np.abs(frames[0].image.astype(int) - expected).mean() < 3
+
+
 def test_a_truncated_video_returns_the_frames_it_has(tmp_path):
     path = write_video(tmp_path / "take.mkv", count=60)
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
@@ -291,8 +338,8 @@ def test_an_invalid_video_is_refused_with_one_line(tmp_path):
 
 
 def test_an_unknown_scheme_is_refused_with_one_line():
-    with pytest.raises(TrackingError, match="use camera, http, https, synthetic or a file"):
-        open_source("rtsp://phone/video")
+    with pytest.raises(TrackingError, match="use camera, http, https, rtsp, rtsps, synth"):
+        open_source("gopher://phone/video")
 
 
 def test_a_new_source_is_a_module_and_one_line_of_the_table(monkeypatch, session):

@@ -1,8 +1,10 @@
 """Phones: frames over HTTP, and a one-line error in time if none arrives."""
 
+import hashlib
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import ClassVar
+from urllib.request import parse_http_list, parse_keqv_list
 
 import pytest
 
@@ -18,7 +20,9 @@ class Phone(BaseHTTPRequestHandler):
     """Serves valid and invalid streams of phone apps."""
 
     ended = threading.Event()
+    next_part = threading.Event()
     heard: ClassVar[list[str]] = []
+    nonce = "dcd98b7102dd2f0e8b11d0f600bfb0c093"
 
     def log_message(self, *arguments):
         pass
@@ -36,6 +40,25 @@ class Phone(BaseHTTPRequestHandler):
             f"--frame\r\nContent-Type: image/jpeg\r\n{head}\r\n".encode() + data + b"\r\n"
         )
 
+    def digest(self):
+        """Serve a picture to who answers the challenge for anna with "s cret" (RFC 2617, 3.2.2)."""
+        scheme, _, rest = self.headers.get("Authorization", "").partition(" ")
+        given = parse_keqv_list(parse_http_list(rest)) if scheme == "Digest" else {}
+
+        def md5(*parts):
+            return hashlib.md5(":".join(parts).encode(), usedforsecurity=False).hexdigest()
+
+        keys = ("nonce", "nc", "cnonce", "qop")
+        secret, request = md5("anna", "camera", "s cret"), md5("GET", self.path)
+        wanted = md5(secret, *[given.get(key, "") for key in keys], request)
+        if given.get("nonce") == self.nonce and given["response"] == wanted:
+            self.answer("multipart/x-mixed-replace; boundary=frame")
+            self.part(jpeg(0))
+            self.ended.wait(TEST_TIMEOUT_S)
+        else:
+            challenge = f'Digest realm="camera", nonce="{self.nonce}", qop="auth-int, auth"'
+            self.answer("text/html", 401, **{"WWW-Authenticate": challenge})
+
     def do_GET(self):
         kind = "multipart/x-mixed-replace; boundary=frame"
         self.heard.append(self.headers.get("Authorization", ""))
@@ -46,6 +69,34 @@ class Phone(BaseHTTPRequestHandler):
                 self.answer("image/jpeg")
             case "/secret":
                 self.answer("text/html", 401)
+            case "/digest":
+                self.digest()
+            case "/unnamed":
+                self.answer("multipart/x-mixed-replace")
+                self.part(jpeg(0))
+                self.part(jpeg(1), length=False)
+                self.ended.wait(TEST_TIMEOUT_S)
+            case "/octets":
+                self.answer("application/octet-stream")
+                self.part(jpeg(0))
+                self.ended.wait(TEST_TIMEOUT_S)
+            case "/letter":
+                self.answer("application/octet-stream")
+                self.wfile.write(b"dear grandmother\n" * 5000)
+                self.ended.wait(TEST_TIMEOUT_S)
+            case "/nostatus":
+                self.wfile.write(b"Content-Type: multipart/x-mixed-replace\r\n\r\n")
+            case "/halves":
+                self.answer(kind)
+                for number in range(9):
+                    whole = jpeg(number)
+                    self.part(whole if number % 3 != 1 else whole[: len(whole) // 2] + b"\xff\xd9")
+                    Phone.next_part.wait(TEST_TIMEOUT_S)
+                    Phone.next_part.clear()
+            case "/frozen":
+                self.answer(kind)
+                while not self.ended.is_set():
+                    self.part(jpeg(0))
             case "/moved":
                 self.answer("text/html", 302, Location="http://elsewhere/video")
             case "/silent":
@@ -115,14 +166,51 @@ def test_name_and_password_are_sent_but_not_printed(phone):
         open_source(f"http://anna:s%20cret@{phone}/secret")
     assert Phone.heard == ["Basic YW5uYTpzIGNyZXQ="]
     assert "cret" not in str(caught.value).replace("/secret", "")
-    assert "needs a password" in str(caught.value)
+    assert "refuses this name and password" in str(caught.value)
+    fails(lambda: open_source(f"http://{phone}/secret"), "needs a password")
+
+
+def test_a_password_is_proved_without_being_sent_where_the_camera_asks_for_that(phone):
+    with open_source(f"http://anna:s%20cret@{phone}/digest") as source:
+        assert source.size == SIZE
+    fails(lambda: open_source(f"http://anna:guess@{phone}/digest"), "refuses this name and pass")
+    fails(lambda: open_source(f"http://{phone}/digest"), "needs a password")
+
+
+@pytest.mark.parametrize("path", ["/unnamed", "/octets"])
+def test_a_boundary_that_is_not_told_is_found_in_the_stream(phone, path):
+    with open_source(f"http://{phone}{path}") as source:
+        assert next(iter(source)).encoded in (jpeg(0), jpeg(1))
+
+
+def test_a_half_image_is_left_out_and_counted(phone):
+    with open_source(f"http://{phone}/halves") as source:
+        assert isinstance(source, HttpSource)
+        Phone.next_part.set()
+        frames = [next(iter(source)).encoded]
+        while len(frames) < 3:
+            Phone.next_part.set()
+            frame = source.wait(0.05)
+            frames += [frame.encoded] if frame else []
+        assert source.health.unusable >= 1
+    whole = {jpeg(number) for number in range(9) if number % 3 != 1}
+    assert whole.issuperset(frames)
+
+
+def test_a_frozen_stream_is_noticed(phone):
+    with open_source(f"http://{phone}/frozen", clock=fast_clock(0.01)) as source:
+        fails(lambda: lost(source), "has repeated the same image for")
+        assert isinstance(source, HttpSource)
+        assert source.health.frozen
 
 
 @pytest.mark.parametrize(
     ("path", "words"),
     [
         ("/page", "is text/html, not a stream of JPEG images"),
-        ("/photo", "is image/jpeg, not a stream of JPEG images"),
+        ("/photo", "is a single JPEG image: give the address of the stream"),
+        ("/letter", "nothing separates its parts"),
+        ("/nostatus", "does not answer in HTTP: its first line is 'Content-Type: multipart"),
         ("/moved", "has moved: open http://elsewhere/video instead"),
         ("/none", "answers 404"),
     ],

@@ -110,9 +110,7 @@ class WindowFinder:
 
     def __init__(self, cube: CubeModel, projection: Projection, prints: Array) -> None:
         self._projection, self._edge = projection, cube.edge
-        signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-        corners = np.array(signs, np.float64) * cube.edge / 2
-        self._points = np.concatenate([corners, prints.reshape(-1, 3)])
+        self._points = np.concatenate([cube.vertices, prints.reshape(-1, 3)])
 
     def window(self, camera_from_cube: Array, scale: int = 0) -> HandWindow | None:
         """Return the window at a pose, (4, 4); None where the cube is hardly in the picture.

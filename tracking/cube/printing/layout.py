@@ -36,6 +36,10 @@ class SheetLayout:
     def __init__(self, cube: CubeModel, paper: str) -> None:
         if paper not in PAPER_SIZES_MM:
             raise TrackingError(f"paper '{paper}' is not known; use {', '.join(PAPER_SIZES_MM)}")
+        if cube.body:
+            raise TrackingError(
+                f"'{cube.name}' has no sheet: it is no cube with one marker in the middle of a side"
+            )
         if cube.marker_size >= cube.edge:
             raise TrackingError(
                 f"the markers of the {cube.name} cube ({cube.marker_size * 1000:g} mm) "

@@ -102,16 +102,21 @@ class EdgeRefiner:
         self._parts: dict[tuple[int, ...], EdgeModel] = {}
 
     def refine(
-        self, patch: Patch, start: Array, blur_motion: BlurMotion = at_rest
+        self,
+        patch: Patch,
+        start: Array,
+        blur_motion: BlurMotion = at_rest,
+        readout_share: float = 0.0,
     ) -> EdgeRefinement | None:
         """Refine a pose, (4, 4), that is right to about half a cell in the image.
 
-        None where too few edges are in view or found, or where they do not agree.
+        `readout_share` is how long the rolling shutter takes, in exposure times. None where too few
+        edges are in view or found, or where they do not agree.
         """
         current = start
         found, k1 = None, 0.0
         for _ in range(MAX_PLACEMENTS):
-            profiles = self._profiles(patch, current, blur_motion(current), k1)
+            profiles = self._profiles(patch, current, blur_motion(current), k1, readout_share)
             step = _fit_repeatedly(patch, profiles, wide=found is None) if profiles else None
             if profiles is None or step is None:
                 return None
@@ -123,13 +128,19 @@ class EdgeRefiner:
         return self._summary(*found) if found else None
 
     def _profiles(
-        self, patch: Patch, pose: Array, blur_motion: Array, k1: float
+        self, patch: Patch, pose: Array, blur_motion: Array, k1: float, readout_share: float
     ) -> EdgeProfiles | None:
         facing = self._faces.facing(pose, MIN_FACING_COSINE)
         if facing not in self._parts:
             self._parts[facing] = self._model.of_faces(facing)
         profiles = place_profiles(
-            self._parts[facing], self._projection, pose, patch, blur_motion, k1
+            self._parts[facing],
+            self._projection,
+            pose,
+            patch,
+            blur_motion,
+            k1,
+            readout_share * blur_motion,
         )
         return profiles if profiles and len(profiles.numbers) >= MIN_EDGE_POINTS else None
 

@@ -40,6 +40,12 @@ WIDE_EXPONENT, GAIN_LOSS = 0.6, 0.11
 narrower one too near, by their ratio. An offset as large as the step is wide is found too small by
 this share besides. Computed for smooth steps; both are right to a tenth."""
 
+ROW_STEPS = 2
+"""How often the row of a point in a rolling image is found."""
+
+NO_MOTION = np.zeros(6)
+"""The pose delta of a cube at rest."""
+
 UNIT_TAPS = np.linspace(-1, 1, TAPS_PER_PROFILE, dtype=np.float32)[:, None]
 """Where those are, as shares of the reach, (taps, 1)."""
 
@@ -80,6 +86,10 @@ class EdgeProfiles:
 
     blur: Array
     """How far that moved each edge along its normal, (N,) [px]."""
+
+    readout_motion: Array
+    """How the cube moves while the shutter rolls from the first row to the last, as a pose delta,
+    (6,)."""
 
     @cached_property
     def face(self) -> Indices:
@@ -134,16 +144,22 @@ def place_profiles(
     patch: Patch,
     blur_motion: Array,
     k1: float = 0.0,
+    readout_motion: Array = NO_MOTION,
 ) -> EdgeProfiles | None:
     """Place profiles across the edges in view of a cube at a pose, as far as a patch shows them.
 
-    `blur_motion` and `k1` are as in `EdgeProfiles`. None where the cube is too close.
+    `blur_motion`, `k1` and `readout_motion` are as in `EdgeProfiles`; the pose is that at the time
+    of the middle row. None where the cube is too close.
     """
     rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
     rotated = rotation @ model.points.T
     points = rotated + origin[:, None]
     if not points.size or points[2].min() < MIN_DEPTH:
         return None
+    if readout_motion.any():
+        points = _at_their_rows(points, rotated, readout_motion, projection)
+        if points[2].min() < MIN_DEPTH:
+            return None
     pixels, by_point = projection.project_with_jacobian(points.T)
     jacobian = by_point.transpose(1, 2, 0)
     bends = None
@@ -176,7 +192,33 @@ def place_profiles(
         reach[found],
         blur_motion,
         blur[found],
+        readout_motion,
     )
+
+
+def _at_their_rows(
+    points: Array, rotated: Array, readout_motion: Array, projection: Projection
+) -> Array:
+    """Points where they are when the row is exposed in which they appear, (3, N) [m].
+
+    `rotated` are their arms from the origin of the cube, (3, N).
+    """
+    way = readout_motion[:3, None] + np.cross(readout_motion[3:], rotated.T).T
+    moved = points
+    # Each time they are nearer to their row by the share of the image that they cross meanwhile.
+    for _ in range(ROW_STEPS):
+        rows = projection.project(moved.T)[:, 1]
+        moved = points + way * row_shares(rows, projection.size[1])
+    return np.asarray(moved, np.float64)
+
+
+def row_shares(rows: Array, height: int) -> Array:
+    """When rows of an image are exposed, as shares of the readout after the middle one, −0.5…0.5.
+
+    >>> row_shares(np.array([-0.5, 239.5]), 480).tolist()
+    [-0.5, 0.0]
+    """
+    return np.asarray((rows + 0.5) / height - 0.5, np.float64)
 
 
 def measure_profiles(

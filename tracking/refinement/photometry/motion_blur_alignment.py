@@ -70,9 +70,9 @@ class MotionBlurAligner:
         self._faces = FacePlanes(cube)
         self._projection = projection
         self._cell = cell_size(cube)
-        self._half = cube.edge / 2
+        self._half = cube.paper / 2
         self._frames = np.stack([face_frame(face) for face in cube.faces])
-        side = round(cube.edge / self._cell * TEXELS_PER_CELL)
+        side = round(cube.paper / self._cell * TEXELS_PER_CELL)
         self._side = side
         self._textures = FaceTextures(cube, side)
         self._grids = {
@@ -234,7 +234,7 @@ class FaceTextures:
     """Textures of all faces of a cube, `side` texels wide, from black 0 to white 1."""
 
     def __init__(self, cube: CubeModel, side: int) -> None:
-        self._texel = cube.edge / side
+        self._texel = cube.paper / side
         self._side = side
         textures = np.stack([_texture(cube, face, side) for face in range(len(cube.faces))])
         self._spectra = np.fft.rfft2(textures).astype(np.complex64)

@@ -53,7 +53,7 @@ class FacePattern:
         self._cube, self._projection = cube, projection
         self._planes = FacePlanes(cube)
         self._prints = [_print(cube, face, n) for n, face in enumerate(cube.faces, 1)]
-        grow = cube.edge / cube.marker_size
+        grow = cube.paper / cube.marker_size
         corners = np.stack([face.corners for face in cube.faces])
         middles = corners.mean(axis=1, keepdims=True)
         self.corners = middles + grow * (corners - middles)
@@ -112,7 +112,7 @@ def _print(cube: CubeModel, face: Face, number: int) -> Image:
     fine = black_texels(cube, marker_cells(cube.dictionary, face.marker_id), 8 * FACE_TEXELS)
     shares = cv2.resize(fine.astype(np.float32), (FACE_TEXELS,) * 2, interpolation=cv2.INTER_AREA)
     sheet[..., INK] = np.rint(255 * shares)
-    margin = (cube.edge - cube.marker_size) / 2 / cube.edge * FACE_TEXELS
+    margin = (cube.paper - cube.marker_size) / 2 / cube.paper * FACE_TEXELS
     size = round(ICON_SHARE * margin)
     if face.icon in icons() and size > 0:
         top = FACE_TEXELS - round(FOLD_GAP_SHARE * margin) - size
