@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import av
 import cv2
@@ -73,9 +74,8 @@ def bgr_of(frame: av.VideoFrame, pixel_shape: float = 1.0) -> Image:
         size = round(frame.width * max(pixel_shape, 1)), round(frame.height / min(pixel_shape, 1))
         image = cv2.resize(image, size, interpolation=cv2.INTER_LINEAR_EXACT)
     pixels = np.asarray(image, np.uint8)
-    if DISPLAY_MATRIX not in frame.side_data:
-        return pixels
-    return _displayed(pixels, bytes(frame.side_data[DISPLAY_MATRIX]))
+    matrix: Any = frame.side_data.get(DISPLAY_MATRIX)  # PyAV types it for motion vectors alone
+    return pixels if matrix is None else _displayed(pixels, bytes(matrix))
 
 
 def pixel_shape_of(stream: VideoStream) -> float:
