@@ -3,16 +3,19 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import av
 import cv2
 import numpy as np
 from av.codec.context import Flags
-from av.sidedata.sidedata import Type as SideDataType
 from av.video.stream import VideoStream
 
 from cubeling.tracking.geometry.arrays import Image
 from cubeling.tracking.sources.device import decode_jpeg
+
+DISPLAY_MATRIX = "DISPLAYMATRIX"
+"""FFmpeg's name of the data of a frame that say how it is turned and mirrored."""
 
 MAX_PIXEL_SHAPE = 4.0
 """Pixels are at most so many times wider than high, or the reverse: more is a broken header."""
@@ -71,10 +74,8 @@ def bgr_of(frame: av.VideoFrame, pixel_shape: float = 1.0) -> Image:
         size = round(frame.width * max(pixel_shape, 1)), round(frame.height / min(pixel_shape, 1))
         image = cv2.resize(image, size, interpolation=cv2.INTER_LINEAR_EXACT)
     pixels = np.asarray(image, np.uint8)
-    for data in frame.side_data:
-        if data.type == SideDataType.DISPLAYMATRIX:
-            return _displayed(pixels, bytes(data))
-    return pixels
+    matrix: Any = frame.side_data.get(DISPLAY_MATRIX)  # PyAV types it for motion vectors alone
+    return pixels if matrix is None else _displayed(pixels, bytes(matrix))
 
 
 def pixel_shape_of(stream: VideoStream) -> float:

@@ -1,6 +1,6 @@
 """Grey profiles across the edges of the cube: where to measure, and the measurement."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 
@@ -87,7 +87,7 @@ class EdgeProfiles:
     blur: Array
     """How far that moved each edge along its normal, (N,) [px]."""
 
-    readout_motion: Array
+    readout_motion: Array = field(default_factory=lambda: np.zeros(6))
     """How the cube moves while the shutter rolls from the first row to the last, as a pose delta,
     (6,)."""
 
