@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 from rich.live import Live
 
-from cubeling.app.commands.access import Broker, Ca, PasswordFile, Site
+from cubeling.app.commands.access import BROKER_GROUP, Broker, Ca, PasswordFile, Site
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.ui.literal_text import literal_text
@@ -53,13 +53,22 @@ def bridge(
         ),
     ] = None,
     site: Site = DEFAULT_SITE,
-    user: Annotated[str | None, typer.Option(help="User name, if not in the URL.")] = None,
+    user: Annotated[
+        str | None, typer.Option(help="User name, if not in the URL.", rich_help_panel=BROKER_GROUP)
+    ] = None,
     password_file: PasswordFile = None,
     ca: Ca = None,
     cert: Annotated[
-        Path | None, typer.Option(help="Client certificate (PEM), if the broker requires one.")
+        Path | None,
+        typer.Option(
+            help="Client certificate (PEM), if the broker requires one.",
+            rich_help_panel=BROKER_GROUP,
+        ),
     ] = None,
-    key: Annotated[Path | None, typer.Option(help="Private key of the certificate (PEM).")] = None,
+    key: Annotated[
+        Path | None,
+        typer.Option(help="Private key of the certificate (PEM).", rich_help_panel=BROKER_GROUP),
+    ] = None,
     hold: Annotated[
         float,
         typer.Option(min=0.0, help="How long the mood of a player who left is kept, in seconds."),
@@ -79,7 +88,7 @@ def bridge(
     Without --mqtt, players and robots communicate within this program. With --mqtt alone, it shows
     the members of the network.
 
-    Example: [cyan]cubeling bridge --play ann=recordings/companion.mcap --robot rex=sim[/]
+    Example: cubeling bridge --play ann=recordings/companion.mcap --robot rex=sim
     """
     robots = values_by_name(robot or (), "--robot", "rex=sim")
     files = values_by_name(play or (), "--play", "ann=a.mcap")

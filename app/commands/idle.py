@@ -13,6 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cubeling.affect import WORD_PLACES, Emotion, Region, region_of
+from cubeling.app.command_group import CommandGroup
 from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
@@ -21,17 +22,13 @@ from cubeling.app.commands.output import (
     needs_matplotlib,
 )
 from cubeling.app.counted import quantity
+from cubeling.app.input_path import check_character, check_motions
 from cubeling.characters.motion import Alignment
 
 if TYPE_CHECKING:
     from cubeling.characters.motion import Person
 
-app = typer.Typer(
-    help="Learn how a person stands, from recordings, and let a character stand so.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
+app = CommandGroup("Learn how a person stands, from recordings, and let a character stand so.")
 
 
 @app.command()
@@ -58,10 +55,12 @@ def learn(
     Rests, balance shifts and small variations are found without marks. A recording with the word
     of an emotion before it, such as happy=FILE, plays while the character feels so.
 
-    Example: [cyan]cubeling idle learn anna.bvh -o anna.idle[/]
+    Example: cubeling idle learn anna.bvh -o anna.idle
     """
     target = chosen_output(output, "my.idle", "idle motion", (".idle",), overwrite)
     felt = [_split_emotion(each) for each in recordings]
+    check_motions(name for name, _ in felt)
+    check_character(character)
     from cubeling.characters import Character, read_motions
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.motion import read_standing, save_person
@@ -97,9 +96,9 @@ def show(
     """Show a person's idle motion: her rests, pauses and balance shifts.
 
     The plot also shows her postures and small variations. It needs matplotlib:
-    [cyan]pip install matplotlib[/]
+    pip install matplotlib
 
-    Example: [cyan]cubeling idle show anna.idle -o anna.png[/]
+    Example: cubeling idle show anna.idle -o anna.png
     """
     if output is not None:
         chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)

@@ -12,6 +12,12 @@ LINES_FILE = toml_kind(
 )
 """A file of what a character says in play, by language and moment."""
 
+DEFAULT_LANGUAGE = "en"
+"""Language of what is said unless the user chooses one."""
+
+SILENT = "none"
+"""The language in which nothing is said."""
+
 MAX_LINES = 1000
 """Most lines for one moment."""
 

@@ -5,11 +5,9 @@ from functools import lru_cache
 
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.session import SessionOptions
-from cubeling.app.speaking.recorded import SILENT, RecordedSpeaker, Speaker
+from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT
+from cubeling.app.speaking.recorded import RecordedSpeaker, Speaker
 from cubeling.characters import Character
-
-DEFAULT_LANGUAGE = "en"
-"""Language of what is said unless the user chooses one."""
 
 
 def open_speaker(

@@ -16,9 +16,6 @@ from cubeling.files import write_whole
 
 Picture = NDArray[np.uint8]
 
-COVERAGE_SUFFIXES = (".png", ".jpg")
-"""Suffixes of a picture of the coverage."""
-
 
 class CoachLines:
     """Prints a line when the advice changes, and no more often than it can be read.
