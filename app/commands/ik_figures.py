@@ -219,8 +219,8 @@ def alone_table(figures: Sequence[AloneFigures], count: int) -> Table:
     """Return the figures of the methods alone; below each, what the thesis prints."""
     table = _table(
         f"Table 7.1 again: {count} random targets, within {TOLERANCE:g} of the chain",
-        ("alone", "joints", "steps", "ms\nalone", "µs in\na batch", "solved", "in\nlimits", "change",
-         "zig-\nzag", "twist\nper cm"),
+        ("alone", "joints", "steps", "ms\nalone", "µs in\na batch", "solved", "in\nlimits",
+         "change", "zig-\nzag", "twist\nper cm"),
     )  # fmt: skip
     for each in figures:
         table.add_row(

@@ -91,7 +91,7 @@ def test_no_key_is_there_twice():
 
 
 def test_the_documents_have_the_table_of_keys():
-    assert key_table() in (HERE.parents[2] / "README.md").read_text()
+    assert key_table() in (HERE.parents[2] / "docs/playing.md").read_text()
 
 
 def test_the_scenario_is_told_once_what_it_is_asked(desk):
