@@ -57,6 +57,8 @@ def open_speaker(
     first = options.language or DEFAULT_LANGUAGE
     if options.lines is None:
         lines_of, languages = lru_cache(bundled_lines), bundled_languages(options.scenario)
+        if options.language is None and languages and first not in languages:
+            first = languages[0]  # a file of rules has one language
     else:
         path = options.lines
         lines_of, languages = lru_cache(lambda _, code: read_lines(path, code)), languages_in(path)
