@@ -38,6 +38,7 @@ GROUPS = {
         "walking.",
         "gesture": "Make gestures that every character can perform, look at them, edit them, and "
         "learn those that beat the rhythm of speech.",
+        "scenario": "Write scenarios of your own: as a file of rules, or as a package in Python.",
         "schedule": "Render a blending schedule in XML to a motion file or a video.",
         "motions": "Make motion graphs of your own recordings: where one clip can follow another.",
         "idle": "Learn how a person stands, from recordings, and let a character stand so.",

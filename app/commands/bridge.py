@@ -142,6 +142,7 @@ def run(
             if not bridge.advance(now) and bridge.network.address is None and end is None:
                 end = now + FINAL_WAIT_S
             printer.connections(bridge)
+            printer.unknown_actions(bridge)
             if isinstance(view, Live) and now - drawn >= DRAW_EVERY_S:
                 drawn = now
                 with bridge.roster.lock:
@@ -160,6 +161,7 @@ class EventPrinter:
         self._lock = threading.Lock()
         self._present: dict[Member, str] = {}
         self._problems: dict[str, str] = {}
+        self._unknown: dict[str, list[str]] = {}
 
     def message(self, member: Member, kind: str, message: Any) -> None:
         """Print a message if it matters; called on a thread of the network."""
@@ -188,6 +190,13 @@ class EventPrinter:
                 self._print(f"{problem}{retry}")
             elif before and not problem:
                 self._print("connected again")
+
+    def unknown_actions(self, bridge: Bridge) -> None:
+        """Print once for each action that a robot of this bridge lacks that it does nothing."""
+        for name, robot in bridge.robots.items():
+            for action in robot.unknown_actions[len(self._unknown.setdefault(name, [])) :]:
+                self._unknown[name].append(action)
+                self._print(f"{name} has no motion or sound '{action}': it does nothing then")
 
     def _print(self, text: str) -> None:
         with self._lock:
