@@ -68,9 +68,7 @@ class CommandGroup(typer.Typer):
         defaults = {"cls": HelpGroup, "add_completion": False}
         super().__init__(help=help, rich_markup_mode=None, **{**defaults, **attributes})
 
-    def command(  # type: ignore[override]  # typer spells its seventeen arguments out
-        self, name: str | None = None, **attributes: Any
-    ) -> Callable[[Any], Any]:
+    def command(self, name: str | None = None, **attributes: Any) -> Callable[[Any], Any]:
         """Return the decorator that adds a function as a command, as `typer.Typer.command` does."""
         return super().command(name, **{"cls": HelpCommand, **attributes})
 

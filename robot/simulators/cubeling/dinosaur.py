@@ -86,12 +86,12 @@ ACTIONS = (
     ),
     SineMotion(
         "shout",
-        1.8,
+        2.0,
         {
-            "neck up": JointSine(-12, 12, 1, -0.25),
-            "neck sideways": JointSine(0, 10, 2),
+            "neck up": JointSine(-12, 10, 1, -0.25),
+            "neck sideways": JointSine(0, 6, 2),
             "tail up": JointSine(40, 10, 2),
-            "eyes and mouth": JointSine(-20, 45, 3, -0.25),
+            "eyes and mouth": JointSine(-40, 20, 3, -0.25),
         },
     ),
 )
