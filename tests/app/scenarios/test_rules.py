@@ -107,8 +107,9 @@ def test_an_action_that_the_character_lacks_is_named(rules, hand):
 
 def test_what_rules_say_are_the_lines_of_the_scenario(rules):
     assert bundled_languages(rules) == ("en",)
-    lines = bundled_lines(rules, "en").lines
-    assert lines == {"rule 1": ("Hooray!",), "rule 2": ("Hello!", "Again!")}
+    said = bundled_lines(rules, "en")
+    assert said is not None
+    assert said.lines == {"rule 1": ("Hooray!",), "rule 2": ("Hello!", "Again!")}
     with pytest.raises(AppError, match="no lines in 'es'"):
         bundled_lines(rules, "es")
 
@@ -174,7 +175,7 @@ def test_the_page_lists_every_condition_and_action():
 
 
 def test_the_example_of_the_page_can_be_read(tmp_path):
-    example = re.search(r"^```toml\n(.*?)^```", PAGE, re.S | re.M)[1]
+    (example,) = re.findall(r"^```toml\n(.*?)^```", PAGE, re.S | re.M)
     (tmp_path / "page.toml").write_text(example)
     assert len(read_rules(tmp_path / "page.toml").rules) == 3
 
