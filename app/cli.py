@@ -8,15 +8,14 @@ import io
 import sys
 import warnings
 from importlib import import_module
-from types import ModuleType
 from typing import Annotated, Any, TextIO
 
 import typer
-import typer.core
 import typer.exceptions
 import typer.main
 from rich.console import Console
 
+from cubeling.app.command_group import CommandGroup, HelpCommand, HelpGroup, former_spellings
 from cubeling.app.interrupts import CTRL_C_EXIT_CODE, termination
 from cubeling.app.ui.literal_text import literal_text
 from cubeling.bad_input import BadInputError, one_line
@@ -25,32 +24,54 @@ BAD_INPUT_EXIT_CODE = 2
 """Exit code for every error that the user can correct."""
 
 
-COMMANDS = {
-    "demo": "See it work: with your camera, with the bundled recording, or as a video.",
-    "play": "Play with the cube in front of a camera.",
-    "replay": "Play a recorded session: in a window, to a video, or only to its summary.",
-    "export": "Write recorded sessions as tables, in CSV and JSON Lines, with a data dictionary.",
-    "bridge": "Let robots follow players on other computers, over an MQTT broker; "
-    "see docs/many.md.",
-    "cube": "Write a cube as a sheet to print, cut, fold and glue.",
-    "calibrate": "Measure the camera's lens: wave the cube in front of it for about 20 seconds.",
-    "latency": "Measure how late the picture is, with your own screen and camera.",
-    "character": "Inspect characters and motions, and make clips to walk with.",
-    "motions": "Make motion graphs of your own recordings: where one clip can follow another.",
-    "idle": "Learn how a person stands, from recordings, and let a character stand so.",
-    "speech": "Look at recorded speech: its pitch, accents, words and phones.",
-    "speak": "Let a character say something, with its mouth, face and hands.",
-    "behave": "Let a character perform blocks of BML: speech, gestures, gaze, postures, walking.",
-    "gesture": "Make gestures that every character can perform, look at them, edit them, and learn "
-    "those that beat the rhythm of speech.",
-    "ik": "Measure the solvers of inverse kinematics.",
-    "schedule": "Render a blending schedule in XML to a motion file or a video.",
-    "robot": "Simulate, try out and test robots, and list the serial ports.",
-    "sounds": "Write all sounds as .wav files, to listen to them and to replace them.",
-    "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
-    "doctor": "Check what this computer has, and show the commands that install what is missing.",
+GROUPS = {
+    "Play": {
+        "demo": "See it work: with your camera, with the bundled recording, or as a video.",
+        "play": "Play with the cube in front of a camera.",
+        "replay": "Play a recorded session: in a window, to a video, or only to its summary.",
+        "cube": "Write a cube as a sheet to print, cut, fold and glue.",
+        "calibrate": "Measure the camera's lens: wave the cube in front of it for about "
+        "20 seconds.",
+    },
+    "Make": {
+        "speak": "Let a character say something, with its mouth, face and hands.",
+        "behave": "Let a character perform blocks of BML: speech, gestures, gaze, postures, "
+        "walking.",
+        "gesture": "Make gestures that every character can perform, look at them, edit them, and "
+        "learn those that beat the rhythm of speech.",
+        "scenario": "Write scenarios of your own: as a file of rules, or as a package in Python.",
+        "schedule": "Render a blending schedule in XML to a motion file or a video.",
+        "motions": "Make motion graphs of your own recordings: where one clip can follow another.",
+        "idle": "Learn how a person stands, from recordings, and let a character stand so.",
+        "sounds": "Write all sounds as .wav files, to listen to them and to replace them.",
+    },
+    "Study": {
+        "export": "Write recorded sessions as tables, in CSV and JSON Lines, with a data "
+        "dictionary.",
+        "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
+        "speech": "Look at recorded speech: its pitch, accents, words and phones.",
+        "ik": "Measure the solvers of inverse kinematics.",
+    },
+    "Robots": {
+        "robot": "Simulate, try out and test robots, and list the serial ports.",
+        "bridge": "Let robots follow players on other computers, over an MQTT broker; "
+        "see docs/many.md.",
+    },
+    "Look": {
+        "doctor": "Check what this computer has, and show the commands that install what is "
+        "missing.",
+        "character": "Inspect characters and motions, and make clips to walk with.",
+        "latency": "Measure how late the picture is, with your own screen and camera.",
+    },
 }
-"""The commands with the first sentence of their help. A new command is registered here."""
+"""The commands in their groups, with the first sentence of their help. A new command is registered
+here."""
+
+COMMANDS = {name: summary for group in GROUPS.values() for name, summary in group.items()}
+"""The commands of all groups."""
+
+FORMER_SPELLINGS = {"lang": "language", "window-size": "size", "camera": "source"}
+"""What options were called in old versions, which still works."""
 
 RENAMED = {"gestures": "cubeling gesture, and its show cubeling gesture library"}
 """What commands of old versions are called now."""
@@ -65,32 +86,19 @@ def load_command(name: str) -> Any:
     module = import_module(f"cubeling.app.commands.{folder}{name}")
     group = getattr(module, "app", None)
     if group is None:
-        group = typer.Typer(rich_markup_mode="rich", add_completion=False)
+        group = CommandGroup()
         group.command(name)(getattr(module, name))
-    command = typer.main.get_command(group)
-    unwrap_help(command)
-    return command
+    return typer.main.get_command(group)
 
 
-def unwrap_help(command: Any) -> None:
-    """Make each paragraph of a command's help one line, which the terminal wraps.
-
-    Typer does so with the first paragraph only: the others would be wrapped twice, first as in the
-    source and then by the terminal.
-    """
-    paragraphs = (command.help or "").split("\n\n")
-    command.help = "\n\n".join(" ".join(paragraph.splitlines()) for paragraph in paragraphs)
-    for each in getattr(command, "commands", {}).values():
-        unwrap_help(each)
-
-
-class LazyGroup(typer.core.TyperGroup):
+class LazyGroup(HelpGroup):
     """Lists `COMMANDS` with their summaries, and imports only the one that is called."""
 
     def __init__(self, **attributes: Any) -> None:
         super().__init__(**attributes)
-        for name, summary in COMMANDS.items():
-            self.add_command(typer.core.TyperCommand(name, help=summary))
+        for group, summaries in GROUPS.items():
+            for name, summary in summaries.items():
+                self.add_command(HelpCommand(name, help=summary, rich_help_panel=group))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Return the name, the command and the arguments that are left for it."""
@@ -100,14 +108,16 @@ class LazyGroup(typer.core.TyperGroup):
         return name, load_command(name) if name in COMMANDS else command, rest
 
 
-app = typer.Typer(
+app = CommandGroup(
     name="cubeling",
     cls=LazyGroup,
-    no_args_is_help=True,
-    rich_markup_mode="rich",
+    add_completion=True,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="First time here? [bold]cubeling demo[/], then [bold]cubeling cube companion[/]",
+    context_settings={
+        "help_option_names": ["-h", "--help"],
+        **former_spellings(FORMER_SPELLINGS),
+    },
+    epilog="First time here? cubeling demo, then cubeling cube companion",
 )
 
 
@@ -133,24 +143,6 @@ def common(
     """Play with a paper cube, a character on your screen and a robot on your desk."""
 
 
-def load_help_drawing() -> None:
-    """Load what draws a help, without its parts for Markdown and tracebacks, which we do not use.
-
-    `typer.rich_utils` imports both at its top: a third of the CPU of `cubeling --help`. Stand-ins
-    take their places until it is loaded; whoever imports the modules later gets them.
-    """
-    parts = {"rich.markdown": "Markdown", "rich.traceback": "Traceback"}
-    stand_ins = {module: ModuleType(module) for module in parts if module not in sys.modules}
-    for module, stand_in in stand_ins.items():
-        setattr(stand_in, parts[module], object)
-    sys.modules.update(stand_ins)
-    try:
-        import_module("typer.rich_utils")
-    finally:
-        for module in stand_ins:
-            del sys.modules[module]
-
-
 def main() -> None:
     """Run a command; bad input ends in one line and exit code 2."""
     arguments = [each for each in sys.argv[1:] if each != "--debug"]  # it may stand anywhere
@@ -159,17 +151,14 @@ def main() -> None:
         show_tracebacks()
     termination.watch()
     print_what_can_be_encoded()
-    if not arguments or {"-h", "--help"} & set(arguments):
-        load_help_drawing()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", UserWarning)  # CharacterWarning is one
             warnings.showwarning = WarningPrinter()
             code = app(arguments, prog_name="cubeling", standalone_mode=False)
     except typer.exceptions.TyperException as error:
-        message = usage_error(error)
-        print_message(message)
-        code = BAD_INPUT_EXIT_CODE if message else 0  # a bare `cubeling` shows its help
+        print_message(usage_error(error))
+        code = BAD_INPUT_EXIT_CODE
     except (KeyboardInterrupt, typer.Abort):
         code = CTRL_C_EXIT_CODE
     except BadInputError as error:
@@ -204,7 +193,7 @@ def usage_error(error: typer.exceptions.TyperException) -> str:
     context = getattr(error, "ctx", None)
     command = context.command_path if context else "cubeling"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
-    return f"{message.rstrip('.')} (see {command} --help)" if message else ""
+    return f"{message.rstrip('.')} (see {command} --help)"
 
 
 def system_error(error: OSError | MemoryError) -> str:

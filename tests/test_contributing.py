@@ -67,7 +67,7 @@ def test_a_recipe_works_as_it_stands(recipe, monkeypatch):
 
 
 def test_all_tables_of_recipes_are_in_the_page():
-    for table in (*TABLES, "BUNDLED", "MOTION_READERS", "COMMANDS"):
+    for table in (*TABLES, "BUNDLED", "MOTION_READERS", "GROUPS"):
         assert re.search(rf"`{table}`", PAGE)
 
 

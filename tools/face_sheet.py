@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from cubeling.app.ui.contact_sheets import save, standing_pose
+from cubeling.app.ui.contact_sheets import save
 from cubeling.characters import Animator, Character, CharacterCommand, Pose
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.face.visemes.coarticulation import EMPHASIS_LEVELS
 from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
 from cubeling.characters.face.visemes.sets import MOUTH_SHAPES, VOWEL_SHAPES
-from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering import create_context, standing_pose
 from cubeling.characters.rendering.portrait import PortraitRenderer, side_by_side
 from cubeling.characters.speech.speech import Utterance
 from cubeling.characters.speech.voices import espeak

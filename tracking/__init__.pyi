@@ -23,6 +23,7 @@ from cubeling.tracking.geometry.intrinsics import Intrinsics as Intrinsics
 from cubeling.tracking.geometry.state import CubeControls as CubeControls, CubeState as CubeState
 from cubeling.tracking.gestures.gestures import CubeGestures as CubeGestures
 from cubeling.tracking.gestures.table import SIDE_NORMALS as SIDE_NORMALS
+from cubeling.tracking.pose_table import PoseTable as PoseTable, track_video as track_video
 from cubeling.tracking.refinement.lens_estimate import LensEstimate as LensEstimate
 from cubeling.tracking.sources import open_source as open_source
 from cubeling.tracking.sources.base import (

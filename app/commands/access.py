@@ -16,25 +16,43 @@ from cubeling.app.ui.literal_text import literal_text
 if TYPE_CHECKING:
     from cubeling.app.running.players import PlayerPublisher
 
+BROKER_GROUP = "Other computers, over an MQTT broker"
+"""Heading of these options in a help."""
+
 Broker = Annotated[
     str | None,
-    typer.Option(help="An MQTT broker: mqtt://USER@HOST, mqtts:// for TLS; see docs/many.md."),
+    typer.Option(
+        help="An MQTT broker: mqtt://USER@HOST, mqtts:// for TLS; see docs/many.md.",
+        rich_help_panel=BROKER_GROUP,
+    ),
 ]
 PlayerName = Annotated[
     str | None,
-    typer.Option(help="Publish the character's actions and emotions over --mqtt, under this name."),
+    typer.Option(
+        help="Publish the character's actions and emotions over --mqtt, under this name.",
+        rich_help_panel=BROKER_GROUP,
+    ),
 ]
-Site = Annotated[str, typer.Option(help="Name of your site on the network, for --mqtt.")]
+Site = Annotated[
+    str,
+    typer.Option(
+        help="Name of your site on the network, for --mqtt.", rich_help_panel=BROKER_GROUP
+    ),
+]
 PasswordFile = Annotated[
     Path | None,
     typer.Option(
         help="A file whose first line is the broker's password "
-        "(or use the environment variable CUBELING_MQTT_PASSWORD)."
+        "(or use the environment variable CUBELING_MQTT_PASSWORD).",
+        rich_help_panel=BROKER_GROUP,
     ),
 ]
 Ca = Annotated[
     Path | None,
-    typer.Option(help="Certificate of the authority (PEM) that signed the broker's, for mqtts://."),
+    typer.Option(
+        help="Certificate of the authority (PEM) that signed the broker's, for mqtts://.",
+        rich_help_panel=BROKER_GROUP,
+    ),
 ]
 
 
@@ -46,21 +64,26 @@ def publisher(
 
     Raises RobotError or AppError if an option is wrong or missing, or the broker refuses.
     """
-    if url is None and name is None:
+    check_publisher(url, name)
+    if url is None or name is None:
         yield None
         return
-    if url is None or name is None:
-        raise AppError(
-            "--mqtt needs --player NAME, your name on the network"
-            if name is None
-            else "--player needs --mqtt URL, the address of the broker"
-        )
     from cubeling.app.running.network import Network
     from cubeling.app.running.players import PlayerPublisher
     from cubeling.robot.network import Credentials
 
     with Network(url, site, Credentials(None, password_file, ca)) as network:
         yield PlayerPublisher(network, name, on_problem=report_problem)
+
+
+def check_publisher(url: str | None, name: str | None) -> None:
+    """Refuse a broker without a player, and a player without a broker; raises AppError."""
+    if (url is None) != (name is None):
+        raise AppError(
+            "--mqtt needs --player NAME, your name on the network"
+            if name is None
+            else "--player needs --mqtt URL, the address of the broker"
+        )
 
 
 def report_problem(problem: str) -> None:

@@ -11,10 +11,11 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
-from cubeling.app.commands.session.play import VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
+from cubeling.app.commands.speech_options import SPEECH_GROUP, VoiceOption
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_character, check_input
 from cubeling.app.output_path import check_output
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.display import has_display
@@ -75,7 +76,9 @@ def behave(
         typer.Option(help="A place for target=NAME, as NAME=x,y,z in metres; may be repeated."),
     ] = None,
     voice: VoiceOption = None,
-    lang: Annotated[str, typer.Option(help="Language of speeches that name none.")] = "en",
+    language: Annotated[
+        str, typer.Option(help="Language of speeches that name none.", rich_help_panel=SPEECH_GROUP)
+    ] = "en",
     emotion: Annotated[str, typer.Option(help="A word such as happy, sad or angry.")] = "",
     spatial: Annotated[
         float, _expressivity("--spatial", "Smaller or wider gestures, -1 to 1.", -1.0)
@@ -105,8 +108,22 @@ def behave(
 ) -> None:
     """Let a character perform blocks of BML: speech, gestures, gaze, postures, walking.
 
-    Example: [cyan]cubeling behave hello.bml -o hello.mp4[/]
+    Example: cubeling behave hello.bml -o hello.mp4
     """
+    if serve is None and not files:
+        raise AppError("there is nothing to perform: name a file of BML or FML, or --serve PORT")
+    if token and serve is None:
+        raise AppError("--token is for --serve: add --serve PORT")
+    for file in files or []:
+        check_input(file, "document")
+    path = chosen_output(output, "behaviour.mp4", "behaviour", OUTPUT_SUFFIXES, overwrite)
+    check_video_codec(path, codec)
+    if feedback is not None:
+        check_output(feedback, "feedback", (".xml",), overwrite=overwrite)
+    feels, pixels = emotion_of(emotion), size_of(size)
+    places = _targets(target or [])
+    check_character(character)
+    # Nothing above needs more than numpy: what is misspelt is refused before the rest is loaded.
     from cubeling.app.behaving.opening import open_lines, read_document
     from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
     from cubeling.app.behaving.recording import record_behaviour
@@ -116,24 +133,16 @@ def behave(
     from cubeling.characters.speech import blood_of
 
     how = GestureExpressivity(spatial, openness, fluidity, bias, tension, power)
-    options = BehaviourOptions(how, emotion_of(emotion), seed, _targets(target or []))
-    body, pixels = with_root_joint(Character.load(character)), size_of(size)
+    options = BehaviourOptions(how, feels, seed, places)
+    body = with_root_joint(Character.load(character))
     if serve is not None:
         first = [read_document(file) for file in files or []]
         shown = (pixels, view) if window else None
-        _serve(serve, token, body, options, first, voice, lang, rate, shown)
+        _serve(serve, token, body, options, first, voice, language, rate, shown)
         return
-    if token:
-        raise AppError("--token is for --serve: add --serve PORT")
-    if not files:
-        raise AppError("there is nothing to perform: name a file of BML or FML, or --serve PORT")
-    path = chosen_output(output, "behaviour.mp4", "behaviour", OUTPUT_SUFFIXES, overwrite)
-    check_video_codec(path, codec)
-    if feedback is not None:
-        check_output(feedback, "feedback", (".xml",), overwrite=overwrite)
-    documents = [read_document(file) for file in files]
+    documents = [read_document(file) for file in files or []]
     console = Console(highlight=False)
-    lines = open_lines(voice, lang)
+    lines = open_lines(voice, language)
     try:
         with console.status("performing"):
             player = BehaviourPlayer(body, lines, options)

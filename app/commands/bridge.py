@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 from rich.live import Live
 
-from cubeling.app.commands.access import Broker, Ca, PasswordFile, Site
+from cubeling.app.commands.access import BROKER_GROUP, Broker, Ca, PasswordFile, Site
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.ui.literal_text import literal_text
@@ -53,13 +53,22 @@ def bridge(
         ),
     ] = None,
     site: Site = DEFAULT_SITE,
-    user: Annotated[str | None, typer.Option(help="User name, if not in the URL.")] = None,
+    user: Annotated[
+        str | None, typer.Option(help="User name, if not in the URL.", rich_help_panel=BROKER_GROUP)
+    ] = None,
     password_file: PasswordFile = None,
     ca: Ca = None,
     cert: Annotated[
-        Path | None, typer.Option(help="Client certificate (PEM), if the broker requires one.")
+        Path | None,
+        typer.Option(
+            help="Client certificate (PEM), if the broker requires one.",
+            rich_help_panel=BROKER_GROUP,
+        ),
     ] = None,
-    key: Annotated[Path | None, typer.Option(help="Private key of the certificate (PEM).")] = None,
+    key: Annotated[
+        Path | None,
+        typer.Option(help="Private key of the certificate (PEM).", rich_help_panel=BROKER_GROUP),
+    ] = None,
     hold: Annotated[
         float,
         typer.Option(min=0.0, help="How long the mood of a player who left is kept, in seconds."),
@@ -79,7 +88,7 @@ def bridge(
     Without --mqtt, players and robots communicate within this program. With --mqtt alone, it shows
     the members of the network.
 
-    Example: [cyan]cubeling bridge --play ann=recordings/companion.mcap --robot rex=sim[/]
+    Example: cubeling bridge --play ann=recordings/companion.mcap --robot rex=sim
     """
     robots = values_by_name(robot or (), "--robot", "rex=sim")
     files = values_by_name(play or (), "--play", "ann=a.mcap")
@@ -133,6 +142,7 @@ def run(
             if not bridge.advance(now) and bridge.network.address is None and end is None:
                 end = now + FINAL_WAIT_S
             printer.connections(bridge)
+            printer.unknown_actions(bridge)
             if isinstance(view, Live) and now - drawn >= DRAW_EVERY_S:
                 drawn = now
                 with bridge.roster.lock:
@@ -151,6 +161,7 @@ class EventPrinter:
         self._lock = threading.Lock()
         self._present: dict[Member, str] = {}
         self._problems: dict[str, str] = {}
+        self._unknown: dict[str, list[str]] = {}
 
     def message(self, member: Member, kind: str, message: Any) -> None:
         """Print a message if it matters; called on a thread of the network."""
@@ -179,6 +190,13 @@ class EventPrinter:
                 self._print(f"{problem}{retry}")
             elif before and not problem:
                 self._print("connected again")
+
+    def unknown_actions(self, bridge: Bridge) -> None:
+        """Print once for each action that a robot of this bridge lacks that it does nothing."""
+        for name, robot in bridge.robots.items():
+            for action in robot.unknown_actions[len(self._unknown.setdefault(name, [])) :]:
+                self._unknown[name].append(action)
+                self._print(f"{name} has no motion or sound '{action}': it does nothing then")
 
     def _print(self, text: str) -> None:
         with self._lock:

@@ -11,9 +11,10 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cubeling.app.commands.session.play import DEFAULT_CAMERA, CubeOption
+from cubeling.app.commands.session.play_options import DEFAULT_CAMERA, CubeOption
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_input
 from cubeling.app.output_path import check_output
 from cubeling.app.ui.display import has_display
 
@@ -27,12 +28,14 @@ CAMERA_FILE = Path("camera.yaml")
 CAMERA_SUFFIXES = (".yaml", ".yml")
 """Suffixes of a camera file."""
 
+COVERAGE_SUFFIXES = (".png", ".jpg")
+"""Suffixes of a picture of the coverage."""
+
 Source = Annotated[
     str,
     typer.Option(
         "--source",
         "-s",
-        "--camera",
         help="Where the pictures come from: camera:0, a video, a session (.mcap), "
         "http://PHONE:8080/video, or synthetic:wave.",
     ),
@@ -79,12 +82,16 @@ def calibrate(
 
     Follow the coach: tip the cube every way, take it to every corner of the picture, near and far,
     and hold it still for a moment each time. If you have no cube, print a board:
-    [cyan]--print-board board.pdf[/], then [cyan]--board charuco[/].
+    --print-board board.pdf, then --board charuco.
 
     With --check, the exit code is 0 for OK and 1 for DEGRADED.
 
-    Example: [cyan]cubeling calibrate -o camera.yaml --save-cube my-cube.toml[/]
+    Example: cubeling calibrate -o camera.yaml --save-cube my-cube.toml
     """
+    _check_paths(output, save_cube, coverage, overwrite)
+    check_input(checked, "camera file")
+    if ":" not in source:
+        check_input(source, "video")
     from cubeling.app.running.opening import intrinsics_for
     from cubeling.app.ui.calibration.coach_lines import write_coverage
     from cubeling.tracking import Intrinsics, open_source
@@ -98,7 +105,6 @@ def calibrate(
         return
     finders = target_finders(cube, board)
     saved = None if checked is None else Intrinsics.load(checked)
-    _check_paths(output, save_cube, coverage, overwrite)
     shown = window and has_display()
     with ExitStack() as closing:
         frames = closing.enter_context(open_source(source))
@@ -226,8 +232,6 @@ def _check_paths(
 
     The camera's file of the default name is the program's own, so it may exist.
     """
-    from cubeling.app.ui.calibration.coach_lines import COVERAGE_SUFFIXES
-
     for path, kind, suffixes in (
         (output, "camera", CAMERA_SUFFIXES),
         (save_cube, "cube", (".toml",)),

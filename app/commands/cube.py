@@ -24,7 +24,7 @@ def cube(
     Print it at 100 % ("actual size"), and check the ruler on the sheet.
     Strong paper (160 g/m²) lasts longest.
 
-    Example: [cyan]cubeling cube companion --paper letter -o cube.pdf[/]
+    Example: cubeling cube companion --paper letter -o cube.pdf
     """
     from cubeling.app.scenarios.roles import check_roles
     from cubeling.tracking import CubeModel, write_sheet

@@ -48,7 +48,7 @@ def doctor(
 
     The exit code is 2 if something is missing without which Cubeling cannot draw or track.
 
-    Example: [cyan]cubeling doctor[/]
+    Example: cubeling doctor
     """
     findings = examine(cameras=cameras)
     table = Table.grid(padding=(0, 2))

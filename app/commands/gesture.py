@@ -12,9 +12,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cubeling.app.command_group import CommandGroup, former_spellings
 from cubeling.app.commands.gesture_library import learn, library
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_character
 from cubeling.app.ui.display import has_display
 
 if TYPE_CHECKING:
@@ -26,12 +28,9 @@ SHEET_SUFFIXES = (".png", ".jpg")
 GESTURE_FOLDER = Path(typer.get_app_dir("cubeling")) / "gestures"
 """Where the user's own gestures are; each goes before a bundled one of its name."""
 
-app = typer.Typer(
-    help="Make gestures that every character can perform, look at them, edit them, and learn those "
-    "that beat the rhythm of speech.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
+app = CommandGroup(
+    "Make gestures that every character can perform, look at them, edit them, and learn those "
+    "that beat the rhythm of speech."
 )
 app.command()(learn)
 app.command()(library)
@@ -57,8 +56,9 @@ def edit(
     Click a sector of the gesture space to put the hand there, choose its shape, and drag the
     borders of the phases. ? shows the keys.
 
-    Example: [cyan]cubeling gesture edit WAVE[/]
+    Example: cubeling gesture edit WAVE
     """
+    check_character(character)
     if not has_display():
         raise AppError("the editor needs a window: run it where there is a display")
     from cubeling.app.workshop.gesture_editor.window import edit as edit_in_window
@@ -70,7 +70,7 @@ def edit(
 def list_gestures(folder: FolderOption = GESTURE_FOLDER) -> None:
     """List all gestures: those of Cubeling, and your own.
 
-    Example: [cyan]cubeling gesture list[/]
+    Example: cubeling gesture list
     """
     from cubeling.app.workshop.gesture_editor.editing.store import GestureStore
     from cubeling.app.workshop.gesture_editor.editing.timing import duration
@@ -102,7 +102,7 @@ def show(
 ) -> None:
     """Show the phases and keys of a gesture, and draw how characters perform it.
 
-    Example: [cyan]cubeling gesture show WAVE -o wave.png[/]
+    Example: cubeling gesture show WAVE -o wave.png
     """
     if output is not None:
         chosen_output(output, "", "picture", SHEET_SUFFIXES, overwrite)
@@ -118,16 +118,16 @@ def show(
         print_written(str(output))
 
 
-@app.command("import")
+@app.command("import", context_settings=former_spellings({"from": "start", "to": "end"}))
 def import_gesture(
     recording: Annotated[
         str, typer.Argument(help="A .bvh, .amc or .glb#CLIP file.", show_default=False)
     ],
-    start: Annotated[float, typer.Option("--from", help="Where it starts, in seconds.")] = 0.0,
+    start: Annotated[float, typer.Option("--start", help="Where it starts, in seconds.")] = 0.0,
     end: Annotated[
         float,
         typer.Option(
-            "--to",
+            "--end",
             help="Where it ends, in seconds; default: the recording's end.",
             show_default=False,
         ),
@@ -141,7 +141,7 @@ def import_gesture(
 ) -> None:
     """Read a gesture off a recording: places, palms and paths of its hands.
 
-    Example: [cyan]cubeling gesture import greeting.bvh --from 1.2 --to 2.4 -o GREET[/]
+    Example: cubeling gesture import greeting.bvh --start 1.2 --end 2.4 -o GREET
     """
     from cubeling.app.workshop.gesture_editor.editing.edits import gesture_name
     from cubeling.app.workshop.gesture_editor.editing.importing import import_gesture

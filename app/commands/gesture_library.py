@@ -17,6 +17,7 @@ from rich.table import Table
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.counted import quantity
+from cubeling.app.input_path import check_character, check_motions
 
 if TYPE_CHECKING:
     from cubeling.characters import Character
@@ -53,9 +54,11 @@ def learn(
     Gestures are found without marks: what hands do between two rests. Recordings without any are
     left out.
 
-    Example: [cyan]cubeling gesture learn talk.bvh -o anna.gestures[/]
+    Example: cubeling gesture learn talk.bvh -o anna.gestures
     """
     target = chosen_output(output, "my.gestures", "gesture library", (".gestures",), overwrite)
+    check_motions(recordings)
+    check_character(character)
     from cubeling.characters import Character, read_motions
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.motion import learn_gestures
@@ -87,7 +90,7 @@ def library(
 ) -> None:
     """Show a library of gestures: phrases by hand and strength, and how well they are connected.
 
-    Example: [cyan]cubeling gesture library human -o gestures.png[/]
+    Example: cubeling gesture library human -o gestures.png
     """
     if output is not None:
         chosen_output(output, "", "picture", SHEET_SUFFIXES, overwrite)

@@ -13,6 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cubeling.affect import WORD_PLACES, Emotion, Region, region_of
+from cubeling.app.command_group import CommandGroup
 from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
@@ -21,17 +22,13 @@ from cubeling.app.commands.output import (
     needs_matplotlib,
 )
 from cubeling.app.counted import quantity
+from cubeling.app.input_path import check_character, check_motions
 from cubeling.characters.motion import Alignment
 
 if TYPE_CHECKING:
-    from cubeling.characters.motion import Person
+    from cubeling.characters.motion import IdleDatabase, Person
 
-app = typer.Typer(
-    help="Learn how a person stands, from recordings, and let a character stand so.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
+app = CommandGroup("Learn how a person stands, from recordings, and let a character stand so.")
 
 
 @app.command()
@@ -58,13 +55,20 @@ def learn(
     Rests, balance shifts and small variations are found without marks. A recording with the word
     of an emotion before it, such as happy=FILE, plays while the character feels so.
 
-    Example: [cyan]cubeling idle learn anna.bvh -o anna.idle[/]
+    Example: cubeling idle learn anna.bvh -o anna.idle
     """
     target = chosen_output(output, "my.idle", "idle motion", (".idle",), overwrite)
     felt = [_split_emotion(each) for each in recordings]
+    check_motions(name for name, _ in felt)
+    check_character(character)
     from cubeling.characters import Character, read_motions
     from cubeling.characters.model import with_root_joint
-    from cubeling.characters.motion import read_standing, save_person
+    from cubeling.characters.motion import (
+        IdleDatabase,
+        PostureVectors,
+        read_standing,
+        save_person,
+    )
 
     body = with_root_joint(Character.load(character))
     console = Console()
@@ -75,7 +79,8 @@ def learn(
             for clip in read_motions([name], body)
         )
     person = body.skeleton, body.anatomy, found
-    describe(console, person)
+    vectors = PostureVectors.of(body.skeleton, body.anatomy)
+    describe(console, person, IdleDatabase.of(found, vectors))
     save_person(person, target)
     name = escape(str(target))
     console.print(
@@ -91,32 +96,38 @@ def show(
     output: PlotOption = None,
     overwrite: OverwriteOption = False,
     mood: Annotated[
-        str, typer.Option(help="What is shown of somebody who was recorded in several moods.")
-    ] = "neutral",
+        str,
+        typer.Option(
+            help="How she stands in this mood, if she was recorded in it; without it, in all."
+        ),
+    ] = "",
 ) -> None:
     """Show a person's idle motion: her rests, pauses and balance shifts.
 
     The plot also shows her postures and small variations. It needs matplotlib:
-    [cyan]pip install matplotlib[/]
+    pip install matplotlib
 
-    Example: [cyan]cubeling idle show anna.idle -o anna.png[/]
+    Example: cubeling idle show anna.idle -o anna.png
     """
     if output is not None:
         chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)
-    region_of(mood)  # refuses what is no emotion
-    emotion = Emotion(*WORD_PLACES[mood], mood)
+    if mood:
+        region_of(mood)  # refuses what is no emotion
     console = Console()
     from cubeling.characters.motion import IdleDatabase, PostureVectors, load_person
 
     found = load_person(_file(person))
     skeleton, anatomy, recordings = found
-    describe(console, found)
+    database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy))
+    if mood:
+        database = database.suiting(Emotion(*WORD_PLACES[mood], mood))
+    describe(console, found, database, mood)
     if output is None:
         return
     with needs_matplotlib():
         from cubeling.app.workshop.idle_plot import save_plot
-    database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy)).suiting(emotion)
-    save_plot(output, database, f"How {person.stem} stands")
+    title = f"How {person.stem} stands" + (f", {mood}" if mood else "")
+    save_plot(output, database, title)
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 
 
@@ -135,12 +146,11 @@ def _split_emotion(recording: str) -> tuple[str, Region | None]:
     return (name, region_of(word)) if equals and word.isalpha() else (recording, None)
 
 
-def describe(console: Console, person: Person) -> None:
-    """Print what is known of a person's idle motion."""
-    from cubeling.characters.motion import BALANCES, COMPONENTS, IdleDatabase, PostureVectors
+def describe(console: Console, person: Person, database: IdleDatabase, mood: str = "") -> None:
+    """Print what is known of a person's idle motion: all of it, or what suits a mood."""
+    from cubeling.characters.motion import BALANCES, COMPONENTS
 
-    skeleton, anatomy, recordings = person
-    database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy))
+    recordings = person[2]
     length = sum(len(each.vectors) / each.rate for each in recordings)
     spread = database.space.variances
     explained = spread[:COMPONENTS].sum() / max(spread.sum(), 1e-12)
@@ -149,7 +159,15 @@ def describe(console: Console, person: Person) -> None:
         f"{COMPONENTS} components hold {explained:.1%} of the postures",
         highlight=False,
     )
-    rows = Table(title="Rests", title_justify="left", title_style="bold", box=SIMPLE_HEAD)
+    felt = {posture.feeling for posture in database.postures}
+    if mood and felt == {None}:
+        console.print(f"She was not recorded in moods: {mood}, she stands as always")
+    rows = Table(
+        title=f"Rests, {mood}" if mood else "Rests",
+        title_justify="left",
+        title_style="bold",
+        box=SIMPLE_HEAD,
+    )
     for heading in ("on", "rests", "shortest", "longest", *(f"then {each}" for each in BALANCES)):
         rows.add_column(heading, justify="left" if heading == "on" else "right")
     for name in BALANCES:

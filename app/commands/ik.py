@@ -5,12 +5,9 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-app = typer.Typer(
-    help="Measure the solvers of inverse kinematics.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
+from cubeling.app.command_group import CommandGroup
+
+app = CommandGroup("Measure the solvers of inverse kinematics.")
 
 
 @app.callback()
@@ -34,7 +31,7 @@ def bench(
     near the base. twist: of a bone, for a centimetre of its target; 99 % are less (first table,
     always from the same start), or 99.9 % while a chain follows its target (second table).
 
-    Example: [cyan]cubeling ik bench[/]
+    Example: cubeling ik bench
     """
     from cubeling.app.commands.ik_figures import (
         CHAIN_SIZES,

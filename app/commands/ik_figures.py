@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from cubeling.characters.motion import (
@@ -217,24 +216,18 @@ def twist_while_following(
 
 
 def alone_table(figures: Sequence[AloneFigures], count: int) -> Table:
-    """Return the figures of the methods alone, beside what the thesis prints."""
-    table = Table(
-        title=f"Table 7.1 again: {count} random targets, within {TOLERANCE:g} of the chain",
-        title_justify="left",
-        title_style="bold",
-        box=SIMPLE_HEAD,
-    )
-    for heading in ("alone", "joints", "steps (printed)", "ms alone (printed)", "µs in a batch",
-                    "solved", "in limits", "change", "zig-zag", "twist per cm"):  # fmt: skip
-        left = heading == "alone"
-        table.add_column(heading, justify="left" if left else "right", no_wrap=left)
+    """Return the figures of the methods alone; below each, what the thesis prints."""
+    table = _table(
+        f"Table 7.1 again: {count} random targets, within {TOLERANCE:g} of the chain",
+        ("alone", "joints", "steps", "ms\nalone", "µs in\na batch", "solved", "in\nlimits",
+         "change", "zig-\nzag", "twist\nper cm"),
+    )  # fmt: skip
     for each in figures:
-        steps, time_ms = PRINTED.get(each.method, {}).get(each.joints, (None, None))
         table.add_row(
             each.method,
             f"{each.joints}",
-            f"{each.iterations:.1f}" + ("" if steps is None else f" ({steps})"),
-            f"{each.single_ms:.2f}" + ("" if time_ms is None else f" ({time_ms:.2f})"),
+            f"{each.iterations:.1f}",
+            f"{each.single_ms:.2f}",
             f"{each.batch_us:.1f}",
             f"{each.solved:.1%}",
             f"{each.in_limits:.1%}",
@@ -242,18 +235,23 @@ def alone_table(figures: Sequence[AloneFigures], count: int) -> Table:
             f"{each.zig_zag:.2f}",
             f"{each.twist_deg:.1f}°",
         )
+        steps, time_ms = PRINTED.get(each.method, {}).get(each.joints, (None, None))
+        if steps is not None or time_ms is not None:
+            printed = (
+                "" if steps is None else f"{steps}",
+                "" if time_ms is None else f"{time_ms:.2f}",
+            )
+            table.add_row("  printed", "", *printed, style="dim")
     return table
 
 
 def sure_table(figures: Sequence[SureFigures]) -> Table:
     """Return the figures of the methods with what all share."""
-    table = Table(
-        title="Within limits, made sure", title_justify="left", title_style="bold", box=SIMPLE_HEAD
-    )
-    for heading in ("begun by", "joints", "steps", "µs in a batch", "solved", "beyond limits",
-                    "change", "zig-zag", "twist per cm"):  # fmt: skip
-        left = heading == "begun by"
-        table.add_column(heading, justify="left" if left else "right", no_wrap=left)
+    table = _table(
+        "Within limits, made sure",
+        ("begun by", "joints", "steps", "µs in\na batch", "solved", "beyond\nlimits", "change",
+         "zig-\nzag", "twist\nper cm"),
+    )  # fmt: skip
     for each in figures:
         table.add_row(
             each.method,
@@ -266,4 +264,19 @@ def sure_table(figures: Sequence[SureFigures]) -> Table:
             f"{each.zig_zag:.2f}",
             f"{each.twist_deg:.1f}°",
         )
+    return table
+
+
+def _table(title: str, headings: Sequence[str]) -> Table:
+    """Return an empty table, so narrow that its figures fit into 80 columns."""
+    table = Table(
+        title=title,
+        title_justify="left",
+        title_style="bold",
+        box=None,
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
+    )
+    for index, heading in enumerate(headings):
+        table.add_column(heading, justify="right" if index else "left", no_wrap=True)
     return table

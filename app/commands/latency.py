@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from cubeling.app.commands.session.play import DEFAULT_CAMERA
+from cubeling.app.commands.session.play_options import DEFAULT_CAMERA
 from cubeling.app.errors import AppError
 from cubeling.app.interrupts import CTRL_C_EXIT_CODE
 from cubeling.app.output_path import check_output
@@ -55,7 +55,7 @@ def latency(
     Then the scenario plays for a few seconds: hold the cube in view. The result is the time from a
     movement to its light on the screen. Ctrl-C or Esc ends early and keeps what was measured.
 
-    Example: [cyan]cubeling latency --source camera:0[/]
+    Example: cubeling latency --source camera:0
     """
     play = None if scenario == "none" else scenario
     if play is not None:

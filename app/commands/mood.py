@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.affect import LABEL_SETS, LabelSet, Personality, bundled_names, bundled_text
+from cubeling.app.command_group import CommandGroup
 from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
@@ -17,13 +18,9 @@ from cubeling.app.commands.output import (
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_input
 
-app = typer.Typer(
-    help="Plot and tabulate the moods of recorded sessions; print personalities.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
+app = CommandGroup("Plot and tabulate the moods of recorded sessions; print personalities.")
 
 MAX_PERSONALITIES = 4
 """Personalities that can be told apart in one plot."""
@@ -51,15 +48,16 @@ def plot(
 ) -> None:
     """Plot the emotion of a session, its actions, and what the robot acknowledged and showed.
 
-    Needs matplotlib: [cyan]pip install matplotlib[/]
+    Needs matplotlib: pip install matplotlib
 
-    Example: [cyan]cubeling mood plot recordings/companion.mcap --personality shy[/]
+    Example: cubeling mood plot recordings/companion.mcap --personality shy
     """
     output = chosen_output(output, f"{session.stem}-mood.svg", "plot", PLOT_SUFFIXES, overwrite)
     personalities = [Personality.load(name) for name in personality or ()]
     if len(personalities) > MAX_PERSONALITIES:
         count = f"{len(personalities)} personalities are too many for one plot"
         raise AppError(f"{count}: name at most {MAX_PERSONALITIES}")
+    check_input(session, "session")
     with needs_matplotlib():
         from cubeling.app.workshop.moods.plot import save_plot
     from cubeling.app.workshop.moods import read_history, read_robot_traces, replay_with
@@ -91,7 +89,7 @@ def table(
 ) -> None:
     """Write the actions, the emotion and the robot's answers of a session, one row per frame.
 
-    Example: [cyan]cubeling mood table recordings/companion.mcap -o moods.csv[/]
+    Example: cubeling mood table recordings/companion.mcap -o moods.csv
     """
     output = chosen_output(output, f"{session.stem}-mood.csv", "table", (".csv",), overwrite)
     other = None if personality is None else Personality.load(personality)
@@ -120,7 +118,7 @@ def personality_(
 ) -> None:
     """Print a bundled personality, as a template for your own; without a name, list them.
 
-    Example: [cyan]cubeling mood personality lively > my-mood.toml[/]
+    Example: cubeling mood personality lively > my-mood.toml
     """
     if name is not None:
         typer.echo(bundled_text(name), nl=False)

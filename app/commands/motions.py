@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.table import Table
 
+from cubeling.app.command_group import CommandGroup
 from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
@@ -21,17 +22,13 @@ from cubeling.app.commands.output import (
 )
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_character, check_motions
 from cubeling.characters.motion import DEFAULT_PROFILE
 
 if TYPE_CHECKING:
     from cubeling.characters.motion import MotionGraph, MotionLibrary, PartGraphs, StoredGraph
 
-app = typer.Typer(
-    help="Make motion graphs of your own recordings: where one clip can follow another.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
+app = CommandGroup("Make motion graphs of your own recordings: where one clip can follow another.")
 
 
 @app.command()
@@ -66,11 +63,13 @@ def build(
 
     The clips are retargeted to one character, and all their frames are compared.
 
-    Example: [cyan]cubeling motions build walk.bvh run.bvh turn.amc -o my.graph[/]
+    Example: cubeling motions build walk.bvh run.bvh turn.amc -o my.graph
     """
     if threshold is not None and not threshold > 0:
         raise AppError(f"a threshold of {threshold:g} joins nothing: give a positive one")
     target = chosen_output(output, "my.graph", "motion graph", (".graph",), overwrite)
+    check_motions(clips)
+    check_character(character)
     from cubeling.app.workshop.motion_graphs.recordings import clip_names, gather
     from cubeling.characters import Character
     from cubeling.characters.model import with_root_joint
@@ -122,9 +121,9 @@ def show(
     """Show a motion graph: its clips, its jumps, and what was pruned.
 
     The plot shows the distances of all frames with the jumps, and how the share of connected frames
-    grows with the threshold. It needs matplotlib: [cyan]pip install matplotlib[/]
+    grows with the threshold. It needs matplotlib: pip install matplotlib
 
-    Example: [cyan]cubeling motions show my.graph -o my.png[/]
+    Example: cubeling motions show my.graph -o my.png
     """
     if output is not None:
         chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)
@@ -167,7 +166,7 @@ def tables(
 
     Printed values stand beside ours. It takes a minute or two, and needs matplotlib.
 
-    Example: [cyan]cubeling motions tables walk.amc run.amc long.amc slow.amc -o tables.html[/]
+    Example: cubeling motions tables walk.amc run.amc long.amc slow.amc -o tables.html
     """
     target = chosen_output(output, "tables.html", "page", (".html",), overwrite)
     with needs_matplotlib():

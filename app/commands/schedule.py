@@ -13,6 +13,7 @@ from rich.markup import escape
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_character, check_input
 from cubeling.app.ui.output_formats import VIDEO_FORMATS, check_video_codec
 from cubeling.files import FileKind
 
@@ -58,11 +59,13 @@ def schedule(
 
     Names of motions in it are those of files beside it, or a character and its clip: human#wave.
 
-    Example: [cyan]cubeling schedule docs/schedules/gesture.xml -o gesture.mp4[/]
+    Example: cubeling schedule docs/schedules/gesture.xml -o gesture.mp4
     """
     suffixes = (".bvh", ".glb", *VIDEO_FORMATS)
     target = chosen_output(output, "schedule.bvh", "schedule", suffixes, overwrite)
     check_video_codec(target, codec)
+    check_input(file, "schedule")
+    check_character(character)
     from cubeling.characters.motion import bake
 
     body = _body(character)

@@ -22,8 +22,9 @@ def sounds(
     Each sound has variants that take turns: kiss-1.wav, kiss-2.wav … Change or replace what you
     like, delete the rest, and play with --sounds FOLDER. See docs/sound.md.
 
-    Example: [cyan]cubeling sounds -o sounds[/]
+    Example: cubeling sounds -o sounds
     """
+    check_output_folder(output, (), "sounds", overwrite=overwrite)
     from cubeling.app.sound import SAMPLE_RATE, SOUNDS, SoundBank, write_wave
 
     bank = SoundBank()

@@ -12,11 +12,17 @@ from rich.markup import escape
 
 from cubeling.affect import Emotion
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
-from cubeling.app.commands.session.play import VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
-from cubeling.app.commands.speech_options import ProfileOption, SettingsOption, profile_of
+from cubeling.app.commands.speech_options import (
+    SPEECH_GROUP,
+    ProfileOption,
+    SettingsOption,
+    VoiceOption,
+    profile_of,
+)
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_character, check_input
 from cubeling.app.output_path import check_output
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.display import has_display
@@ -25,6 +31,8 @@ from cubeling.app.ui.output_formats import VIDEO_FORMATS, check_video_codec
 if TYPE_CHECKING:
     from cubeling.characters import Character
     from cubeling.characters.speech import Speech, TaggedText
+
+NOTHING_TO_SAY = "there is nothing to say: give a text, --file, --audio or --live"
 
 OUTPUT_SUFFIXES = (".wav", ".bvh", *VIDEO_FORMATS)
 
@@ -50,8 +58,11 @@ def speak(
         str, typer.Option(help="Who says it: bundled, or a .glb, .gltf or .vrm file.")
     ] = "human",
     voice: VoiceOption = None,
-    lang: Annotated[
-        str, typer.Option(help="Its language, as [cyan]espeak-ng --voices[/] lists them.")
+    language: Annotated[
+        str,
+        typer.Option(
+            help="Its language, as espeak-ng --voices lists them.", rich_help_panel=SPEECH_GROUP
+        ),
     ] = "en",
     emotion: Annotated[
         str, typer.Option(help="A word such as happy, sad or angry: for face, body and voice.")
@@ -63,10 +74,15 @@ def speak(
     profile: ProfileOption = "usual",
     settings: SettingsOption = None,
     save_profile: Annotated[
-        Path | None, typer.Option(help="Write the profile, as changed by --set, to this file.")
+        Path | None,
+        typer.Option(
+            help="Write the profile, as changed by --set, to this file.",
+            rich_help_panel=SPEECH_GROUP,
+        ),
     ] = None,
     gestures: Annotated[
-        Path | None, typer.Option(help="A file of [cyan]cubeling gesture learn[/].")
+        Path | None,
+        typer.Option(help="A file of cubeling gesture learn.", rich_help_panel=SPEECH_GROUP),
     ] = None,
     size: Annotated[str, typer.Option(help="Size of the video.")] = "640x480",
     rate: Annotated[float, typer.Option(help="Frames a second.", min=1.0, max=120.0)] = 25.0,
@@ -74,8 +90,22 @@ def speak(
 ) -> None:
     """Let a character say something, with its mouth, face and hands.
 
-    Example: [cyan]cubeling speak "Hello! I am a paper cube." -o hello.mp4[/]
+    Example: cubeling speak "Hello! I am a paper cube." -o hello.mp4
     """
+    how, feels, pixels = profile_of(profile, settings), emotion_of(emotion), size_of(size)
+    if save_profile is not None:
+        check_output(save_profile, "profile", (".toml",), overwrite=overwrite)
+    if not live and not text.strip() and file is None and audio is None:
+        raise AppError(NOTHING_TO_SAY)
+    target = chosen_output(output, "speech.mp4", "speech", OUTPUT_SUFFIXES, overwrite or live)
+    check_video_codec(target, codec)
+    check_input(file, "text")
+    check_input(audio, "sound")
+    check_input(gestures, "gesture library")
+    check_character(character)
+    if live and not has_display():
+        raise AppError("there is no display here: --live needs a window")
+    # Nothing above needs more than numpy: what is misspelt is refused before the rest is loaded.
     from cubeling.app.pipeline.spoken_line import SpokenLine
     from cubeling.app.sound import write_wave
     from cubeling.app.sound.session_sound import at_sample_rate
@@ -85,31 +115,24 @@ def speak(
     from cubeling.characters.model import gestures_for, save_bvh, with_root_joint
     from cubeling.characters.speech import TaggedText, blood_of, utterance_of
 
-    how = profile_of(profile, settings)
     if save_profile is not None:
-        check_output(save_profile, "profile", (".toml",), overwrite=overwrite)
         how.save(save_profile)
     body = with_root_joint(Character.load(character))
     if gestures is not None:
         body = replace(body, gestures=gestures_for(gestures, body.skeleton, character))
-    feels, pixels = emotion_of(emotion), size_of(size)
     if live:
-        if not has_display():
-            raise AppError("there is no display here: --live needs a window")
         speak_live(body, size=pixels, view=view, emotion=feels, profile=how)
         return
-    target = chosen_output(output, "speech.mp4", "speech", OUTPUT_SUFFIXES, overwrite)
-    check_video_codec(target, codec)
     tagged = TaggedText.read(text) if file is None else TaggedText.load(file)
     if not tagged.text.strip() and not tagged.spans and audio is None:
-        raise AppError("there is nothing to say: give a text, --file, --audio or --live")
+        raise AppError(NOTHING_TO_SAY)
     _check_gestures(tagged, body)
     console = Console(highlight=False)
     with console.status("speaking"):
         if audio is None:
-            speech = _speech_of(tagged.text, lang, feels, voice)
+            speech = _speech_of(tagged.text, language, feels, voice)
         else:
-            speech = _read_recording(audio, tagged, lang, voice)
+            speech = _read_recording(audio, tagged, language, voice)
         utterance = utterance_of(speech, tagged, how.accents)
         line = SpokenLine(utterance, speech.samples, speech.rate, how)
         if target.suffix.lower() == ".wav":

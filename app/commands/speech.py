@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cubeling.app.command_group import CommandGroup
 from cubeling.app.commands.output import (
     PLOT_SUFFIXES,
     OverwriteOption,
@@ -30,22 +31,17 @@ if TYPE_CHECKING:
 MAX_PLOT_S = 120.0
 """Longest speech that is plotted [s]."""
 
-app = typer.Typer(
-    help="Look at recorded speech: its pitch, accents, words and phones.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
+app = CommandGroup("Look at recorded speech: its pitch, accents, words and phones.")
 
 FileArgument = Annotated[Path, typer.Argument(help="A recording: WAV, MP3, Ogg, a video, …")]
-LanguageOption = Annotated[str, typer.Option("--lang", help="Language of the text: en, ca, …")]
+LanguageOption = Annotated[str, typer.Option("--language", help="Language of the text: en, ca, …")]
 
 
 @app.command()
 def show(
     file: FileArgument,
     text: Annotated[str | None, typer.Option(help="What is said, for words and phones.")] = None,
-    lang: LanguageOption = "en",
+    language: LanguageOption = "en",
     textgrid: Annotated[
         Path | None, typer.Option(help="A TextGrid with words or phones, instead of --text.")
     ] = None,
@@ -62,9 +58,9 @@ def show(
 
     The plot also shows waveform, intensity and voicing, words and phones if the text is known, and
     the gestures with which a character would say it.
-    It needs matplotlib: [cyan]pip install matplotlib[/]
+    It needs matplotlib: pip install matplotlib
 
-    Example: [cyan]cubeling speech show talk.wav --text "Hello there" -o talk.png[/]
+    Example: cubeling speech show talk.wav --text "Hello there" -o talk.png
     """
     if output is not None:
         chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)
@@ -79,7 +75,7 @@ def show(
     if textgrid is not None:
         speech = with_textgrid(speech, read_textgrid(textgrid))
     elif text is not None:
-        speech = align_speech(speech, text, lang, console)
+        speech = align_speech(speech, text, language, console)
     settings = AccentSettings(threshold)
     accents = describe(console, speech, settings)
     if output is None:
@@ -110,7 +106,7 @@ def planned_gestures(
 def align(
     file: FileArgument,
     text: Annotated[str, typer.Option(help="What is said; @FILE reads it from a file.")],
-    lang: LanguageOption = "en",
+    language: LanguageOption = "en",
     sphinx: Annotated[
         bool, typer.Option(help="Align by PocketSphinx, more exact; English only.")
     ] = False,
@@ -121,14 +117,14 @@ def align(
 ) -> None:
     """Write when each word and phone of a recording is said, as a TextGrid.
 
-    Example: [cyan]cubeling speech align talk.wav --text "Bon dia" --lang ca[/]
+    Example: cubeling speech align talk.wav --text "Bon dia" --language ca
     """
     target = chosen_output(output, f"{file.stem}.TextGrid", "TextGrid", (".textgrid",), overwrite)
     console = Console()
     said = said_text(text)
     from cubeling.characters.speech import read_speech, textgrid_of, write_textgrid
 
-    speech = align_speech(read_speech(file), said, lang, console, sphinx=sphinx)
+    speech = align_speech(read_speech(file), said, language, console, sphinx=sphinx)
     write_textgrid(target, textgrid_of(speech))
     console.print(
         f"[bold]{escape(str(target))}[/] is written: {quantity(len(speech.words), 'word')}, "

@@ -9,21 +9,37 @@ import typer
 if TYPE_CHECKING:
     from cubeling.characters.speech import SpeechProfile
 
+SPEECH_GROUP = "Speech"
+"""Heading of these options in a help."""
+
+VOICE_VARIABLE = "CUBELING_VOICE"
+"""Environment variable of the option `--voice`."""
+
+VoiceOption = Annotated[
+    str | None,
+    typer.Option(
+        help="A program that speaks, instead of eSpeak NG; see docs/speaking.md.",
+        envvar=VOICE_VARIABLE,
+        rich_help_panel=SPEECH_GROUP,
+    ),
+]
 ProfileOption = Annotated[
     str,
     typer.Option(
         help="How the body speaks: usual, lively, calm, or a .toml file of "
-        "[cyan]cubeling speak --save-profile[/].",
+        "cubeling speak --save-profile.",
         metavar="NAME|FILE",
+        rich_help_panel=SPEECH_GROUP,
     ),
 ]
 SettingsOption = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
-        help="Change a field of the profile, such as [cyan]gesture_emphasis=0.5[/]; may be given "
+        help="Change a field of the profile, such as gesture_emphasis=0.5; may be given "
         "several times. docs/speaking.md lists the fields, and so does a wrong name.",
         metavar="FIELD=VALUE",
+        rich_help_panel=SPEECH_GROUP,
     ),
 ]
 

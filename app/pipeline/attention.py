@@ -5,14 +5,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import check_look
 from cubeling.characters import CharacterCommand
 from cubeling.tracking import CubeControls, CubeState
 
 Array = NDArray[np.float64]
-
-LOOK_CHOICES = ("auto", "cube", "hand", "camera", "none")
-"""What the user may choose."""
 
 MIN_SPEED_M_S = 0.03
 """A slower cube counts as still."""
@@ -42,10 +39,7 @@ class Attention:
     """
 
     def __init__(self, look: str, edge: float) -> None:
-        if look not in LOOK_CHOICES:
-            raise AppError(
-                f"the character cannot look at '{look}': choose one of {', '.join(LOOK_CHOICES)}"
-            )
+        check_look(look)
         self.look = look
         """One of `LOOK_CHOICES`."""
         self._edge = edge

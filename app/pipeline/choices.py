@@ -26,6 +26,33 @@ INSIDE_CHOICES = {
 """When the character is inside the cube, and what that means."""
 
 
+LOOK_CHOICES = ("auto", "cube", "hand", "camera", "none")
+"""What the character's eyes may follow."""
+
+SPEED_MAP_NAMES = ("corrected", "legacy")
+"""Names of AvatAR's Speed maps: corrected, and as printed in the thesis."""
+
+
+def check_look(name: str) -> None:
+    """Raise AppError for a name that is none of `LOOK_CHOICES`."""
+    if name not in LOOK_CHOICES:
+        known = ", ".join(LOOK_CHOICES)
+        raise AppError(f"the character cannot look at '{name}': choose one of {known}")
+
+
+def check_speed_map(name: str) -> None:
+    """Raise AppError for a name that is none of `SPEED_MAP_NAMES`."""
+    if name not in SPEED_MAP_NAMES:
+        known = ", ".join(SPEED_MAP_NAMES)
+        raise AppError(f"no speed map is called '{name}': choose one of {known}")
+
+
+def check_turns(turns: float) -> None:
+    """Raise AppError for full turns that are too few or too many to turn a cube."""
+    if not 0.1 <= turns <= 20:
+        raise AppError(f"the turns must be from 0.1 to 20, not {turns:g}")
+
+
 def realism_of(text: str) -> tuple[str, ...]:
     """Return the choices in a text, separated by commas.
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 from cubeling.app.errors import AppError
 from cubeling.registry import Registry
@@ -38,6 +39,16 @@ SUMMARIES = {place.partition(":")[0]: summary for place, summary in BUNDLED.item
 """What the bundled scenarios are; each class takes its own from here."""
 
 
+RULES_SUFFIX = ".toml"
+"""Ending of a scenario that is a file of rules: see `cubeling.app.scenarios.rules`."""
+
+_RULES = "cubeling.app.scenarios.rules"
+FILES = Registry[Callable[[str], "Any"]](
+    {"check": f"{_RULES}.file:read_rules", "load": f"{_RULES}.scenario:rules_scenario"}
+)
+"""What reads a file of rules, and what makes a scenario of it: the latter loads numpy."""
+
+
 @cache
 def added_scenarios() -> tuple[EntryPoint, ...]:
     """Return the scenarios of other packages; reading the installed ones takes 25 ms, so once."""
@@ -63,18 +74,26 @@ def scenario_names() -> tuple[str, ...]:
 
 
 def find_scenario(name: str) -> type[Scenario]:
-    """Return the class of a scenario.
+    """Return the class of a scenario, by its name or the path of a file of rules.
 
     Raises AppError if there is none of that name, if two packages add one, or if the package that
-    adds it is broken.
+    adds it or the file is broken.
     """
+    if name.endswith(RULES_SUFFIX):
+        return cast("type[Scenario]", FILES["load"](name))
     point = _entry_point(name)
     return SCENARIOS[name] if point is None else _load(point)
 
 
 def check_scenario(name: str) -> None:
-    """Raise AppError if there is no scenario of a name, or if two packages add one; load none."""
-    _entry_point(name)
+    """Raise AppError if there is no scenario of a name, or if two packages add one; load none.
+
+    A file of rules is read, which takes milliseconds.
+    """
+    if name.endswith(RULES_SUFFIX):
+        FILES["check"](name)
+    else:
+        _entry_point(name)
 
 
 def scenario_summary(name: str) -> str:
@@ -91,7 +110,9 @@ def _entry_point(name: str) -> EntryPoint | None:
     packages = [*(["cubeling"] if name in SCENARIOS else []), *map(_package, points)]
     if not packages:
         known = ", ".join(scenario_names())
-        raise AppError(f"no scenario is called '{name}': choose one of {known}")
+        raise AppError(
+            f"no scenario is called '{name}': choose one of {known}, or a .toml file of rules"
+        )
     if len(packages) > 1:
         raise AppError(
             f"the packages {' and '.join(packages)} each have a scenario '{name}': "

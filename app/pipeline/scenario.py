@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
 from cubeling.affect import Emotion, Personality
-from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import check_speed_map, check_turns
 from cubeling.app.pipeline.props import Thing
 from cubeling.app.pipeline.situation import Situation
 from cubeling.app.pipeline.spoken_line import SpokenLine
@@ -72,10 +72,6 @@ class Outcome:
     """Small things on the table, or in the character's hands."""
 
 
-SPEED_MAP_NAMES = ("corrected", "legacy")
-"""Names of AvatAR's Speed maps: corrected, and as printed in the thesis."""
-
-
 @dataclass(frozen=True)
 class ScenarioSettings:
     """What the user may choose for a scenario; raises AppError if a setting is out of its range."""
@@ -90,11 +86,8 @@ class ScenarioSettings:
     """How events change the mood; None for the scenario's own personality."""
 
     def __post_init__(self) -> None:
-        if self.speed_map not in SPEED_MAP_NAMES:
-            choices = ", ".join(SPEED_MAP_NAMES)
-            raise AppError(f"no speed map is called '{self.speed_map}': choose one of {choices}")
-        if not 0.1 <= self.turns <= 20:
-            raise AppError(f"the turns must be from 0.1 to 20, not {self.turns:g}")
+        check_speed_map(self.speed_map)
+        check_turns(self.turns)
 
 
 class Scenario(Protocol):

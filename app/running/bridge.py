@@ -100,6 +100,8 @@ class Bridge(Closeable):
         """The network."""
         self.clients: dict[str, BusClient[Any]] = {}
         """Connections of its members by role and name: "robot rex"."""
+        self.robots: dict[str, RobotNode] = {}
+        """The nodes of its robots by name."""
         self._recorded: list[RecordedPlayer] = []
         self._closing = ExitStack()
         try:
@@ -117,6 +119,7 @@ class Bridge(Closeable):
             for name, robot in opened.items():
                 member = network.member("robot", name)
                 node = RobotNode(member, robot, network.session, follows, hold)
+                self.robots[name] = node
                 self.clients[f"robot {name}"] = network.join(node, f"{member.site}:robot:{name}")
             for name, path in files.items():
                 publisher = PlayerPublisher(network, name, max_age)

@@ -1,8 +1,12 @@
 """What can be refused of a session's options before anything is loaded or opened."""
 
+from cubeling.affect import Personality
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_character, check_input, check_motions
 from cubeling.app.output_path import check_output
+from cubeling.app.pipeline.choices import check_look, check_speed_map, check_turns
 from cubeling.app.session import SessionOptions, check_codec
+from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT, bundled_lines, read_lines
 from cubeling.app.ui.output_formats import OUTPUT_SUFFIXES, check_video_codec
 
 
@@ -30,3 +34,38 @@ def check_output_paths(options: SessionOptions) -> None:
     if options.record is not None:
         check_output(options.record, "recording", (".mcap",), overwrite=False, remedy="remove it")
     check_codec(options.codec)  # a key may record too
+
+
+def check_inputs(options: SessionOptions) -> None:
+    """Refuse names and files that there are not.
+
+    Raises AppError, AffectError, CharacterError or RobotError. What only reading shows is left to
+    those who read it.
+    """
+    check_look(options.look)
+    check_speed_map(options.speed_map)
+    check_turns(options.turns)
+    if options.personality is not None:
+        Personality.load(options.personality)
+    check_lines(options)
+    check_input(options.intrinsics, "camera file")
+    check_input(options.idle, "idle motion")
+    check_input(options.robot_settings, "robot settings")
+    check_motions(options.motions)
+    if options.sounds is not None and not any(options.sounds.glob("*.wav")):
+        raise AppError(f"there are no .wav files in a folder '{options.sounds}'")
+    if ":" not in options.source:  # that of a URI, or of a drive, is left to `open_source`
+        check_input(options.source, "video")
+    check_character(options.character)
+    if options.robot.startswith("sim:"):
+        from cubeling.robot import simulator_of
+
+        simulator_of(options.robot)  # cheap, and it knows names and faults
+
+
+def check_lines(options: SessionOptions) -> None:
+    """Refuse lines that there are not, or not in the language that the user has chosen."""
+    if options.lines is not None:
+        read_lines(options.lines, options.language or DEFAULT_LANGUAGE)
+    elif options.language not in (None, SILENT):
+        bundled_lines(options.scenario, options.language)

@@ -9,6 +9,16 @@ from cubeling.app.running.network import Network
 from cubeling.characters import CharacterCommand
 from cubeling.robot.network import MAX_AGE_S, BusClient, Player
 
+WEIGHT_STEP = 0.2
+"""An action is published again when its weight has changed by so much."""
+
+WEIGHT_NOISE = 0.02
+"""A weight that changes by less rests: nobody holds a knob still."""
+
+WEIGHT_RESTS_S = 0.5
+"""How long a weight must rest before it is published [s]: robots do the action again, so they are
+not to do it all the time while the knob turns."""
+
 UNPUBLISHED_ACTIONS = frozenset({"idle", "move"})
 """Actions of a character that robots do not repeat."""
 
@@ -34,6 +44,8 @@ class PlayerPublisher:
         )
         """The player's connection."""
         self._action = "idle"
+        self._published = 0.0  # the weight that was published last
+        self._weight, self._rests_since = 0.0, 0.0
         self._on_problem = on_problem
         self._reported = False
 
@@ -47,16 +59,26 @@ class PlayerPublisher:
         self._reported = broken
 
     def publish_action(self, command: CharacterCommand) -> None:
-        """Publish an action if this command begins one; a hidden character does nothing."""
+        """Publish an action that begins, and again when the hand has changed its weight.
+
+        A hidden character does nothing.
+        """
         action = command.activity if command.visible else "idle"
-        if action == self._action:
+        begins, self._action = action != self._action, action
+        if not (begins or self._is_changed(command)) or action in UNPUBLISHED_ACTIONS:
             return
-        self._action = action
-        if action not in UNPUBLISHED_ACTIONS:
-            # The picture goes on if a name cannot be sent.
-            with self.client.lock, suppress(ValueError):
-                self.client.endpoint.act(action, command.weight, time.monotonic())
-            self.client.wake()
+        self._published = self._weight = command.weight
+        # The picture goes on if a name cannot be sent.
+        with self.client.lock, suppress(ValueError):
+            self.client.endpoint.act(action, command.weight, time.monotonic())
+        self.client.wake()
+
+    def _is_changed(self, command: CharacterCommand) -> bool:
+        """Return whether the weight of the action has changed, and rests."""
+        if abs(command.weight - self._weight) > WEIGHT_NOISE:
+            self._weight, self._rests_since = command.weight, command.timestamp
+        rests = command.timestamp - self._rests_since >= WEIGHT_RESTS_S
+        return rests and abs(command.weight - self._published) >= WEIGHT_STEP
 
     def publish_emotion(self, target: EmotionTarget) -> None:
         """Publish an emotion if it has changed."""

@@ -19,7 +19,7 @@ def check_cubes(scenario: str, cubes: Sequence[str]) -> None:
     models = [CubeModel.load(name) for name in names]
     markers: dict[frozenset[tuple[str, int]], str] = {}
     for name, model in zip(names, models, strict=True):
-        check_roles(model, name)
+        check_roles(model, name, chosen.roles)
         if (twin := markers.setdefault(model.markers, name)) != name:
             raise AppError(f"{name} has the markers of {twin}: name only one of them")
     missing = missing_roles(chosen, models[0])
@@ -31,9 +31,13 @@ def check_cubes(scenario: str, cubes: Sequence[str]) -> None:
         )
 
 
-def check_roles(cube: CubeModel, where: str) -> None:
-    """Raise AppError if a face has a role of no bundled cube and of no scenario."""
-    known = [role for name in bundled_cubes() for role in _roles(CubeModel.load(name))]
+def check_roles(cube: CubeModel, where: str, played: Sequence[str] = ()) -> None:
+    """Raise AppError if a face has a role of no bundled cube and of no scenario.
+
+    `played` are the roles of the scenario that is to be played.
+    """
+    known = [*played]
+    known += [role for name in bundled_cubes() for role in _roles(CubeModel.load(name))]
     unknown = [face for face in cube.faces if face.role and face.role not in known]
     if unknown:  # only then import the packages that add scenarios
         known += [role for name in scenario_names() for role in find_scenario(name).roles]

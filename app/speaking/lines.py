@@ -5,12 +5,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.registry import RULES_SUFFIX
+from cubeling.app.scenarios.rules.file import read_rules
 from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read, toml_kind
 
 LINES_FILE = toml_kind(
     "lines", AppError, "cubeling.app.speaking.lines:languages_in", MAX_LONG_FILE_BYTES
 )
 """A file of what a character says in play, by language and moment."""
+
+DEFAULT_LANGUAGE = "en"
+"""Language of what is said unless the user chooses one."""
+
+SILENT = "none"
+"""The language in which nothing is said."""
 
 MAX_LINES = 1000
 """Most lines for one moment."""
@@ -33,14 +41,20 @@ class ScenarioLines:
 def bundled_lines(scenario: str, language: str) -> ScenarioLines | None:
     """Return the lines of a bundled scenario; None if it has none.
 
-    Raises AppError if it has lines, but not in this language.
+    Those of a file of rules are what its rules say. Raises AppError if it has lines, but not in
+    this language.
     """
+    if scenario.endswith(RULES_SUFFIX):
+        return _rule_lines(scenario, language)
     file = _bundled_file(scenario)
     return read_lines(file, language) if file.is_file() else None
 
 
 def bundled_languages(scenario: str) -> tuple[str, ...]:
     """Return the languages of the lines of a bundled scenario; () if it has none."""
+    if scenario.endswith(RULES_SUFFIX):
+        rules = read_rules(scenario)
+        return (rules.language,) if rules.lines else ()
     file = _bundled_file(scenario)
     return languages_in(file) if file.is_file() else ()
 
@@ -62,6 +76,18 @@ def read_lines(path: Path, language: str) -> ScenarioLines:
 def languages_in(path: Path) -> tuple[str, ...]:
     """Return the languages of the lines in a .toml file; errors as those of `read_lines`."""
     return tuple(_voice(path))
+
+
+def _rule_lines(path: str, language: str) -> ScenarioLines | None:
+    rules = read_rules(path)
+    if not rules.lines:
+        return None
+    if language != rules.language:
+        raise AppError(f"{path}: there are no lines in '{language}'; has {rules.language}")
+    for event, lines in rules.lines.items():
+        if any(len(line) > LONGEST_LINE for line in lines):
+            raise AppError(f"{path}: {event}.say: a line has at most {LONGEST_LINE} characters")
+    return ScenarioLines(language, rules.lines)
 
 
 def _bundled_file(scenario: str) -> Path:

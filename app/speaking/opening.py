@@ -5,11 +5,9 @@ from functools import lru_cache
 
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.session import SessionOptions
-from cubeling.app.speaking.recorded import SILENT, RecordedSpeaker, Speaker
+from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT
+from cubeling.app.speaking.recorded import RecordedSpeaker, Speaker
 from cubeling.characters import Character
-
-DEFAULT_LANGUAGE = "en"
-"""Language of what is said unless the user chooses one."""
 
 
 def open_speaker(
@@ -59,6 +57,8 @@ def open_speaker(
     first = options.language or DEFAULT_LANGUAGE
     if options.lines is None:
         lines_of, languages = lru_cache(bundled_lines), bundled_languages(options.scenario)
+        if options.language is None and languages and first not in languages:
+            first = languages[0]  # a file of rules has one language
     else:
         path = options.lines
         lines_of, languages = lru_cache(lambda _, code: read_lines(path, code)), languages_in(path)

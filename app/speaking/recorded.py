@@ -7,9 +7,6 @@ from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
-SILENT = "none"
-"""The language in which nothing is said."""
-
 
 class Speaker(Protocol):
     """Says what the character says in a session. Whoever opens it closes it."""

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
 from cubeling.app.speaking.line_chooser import LineChooser, LineRequest
-from cubeling.app.speaking.lines import ScenarioLines
-from cubeling.app.speaking.recorded import SILENT
+from cubeling.app.speaking.lines import SILENT, ScenarioLines
 from cubeling.characters import CharacterError
 from cubeling.characters.motion import GestureLibrary
 from cubeling.characters.speech import (

@@ -1,6 +1,7 @@
 """A clip of a character as a video."""
 
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -9,13 +10,10 @@ from numpy.typing import NDArray
 from cubeling.app.ui.output_formats import AUTO_CODEC
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.characters import Character, Clip, Pose
-from cubeling.characters.rendering import PortraitRenderer, create_context
+from cubeling.characters.rendering import draw_clip
 
 Focus = tuple[NDArray[np.float64], float]
 """What fills the picture: a centre (3,) and a radius in the character frame [m]."""
-
-_POSES_SEEN = 24
-"""Poses of a clip that fit into the picture where nothing says what is seen."""
 
 
 def write_clip(
@@ -40,10 +38,8 @@ def write_clip(
         The file, and width and height of its pictures [px].
     character, clip
         Who moves, and how.
-    azimuth, elevation, blood
-        As in `PortraitRenderer.portrait`.
-    focus
-        Returns what is seen of a pose at a time [s]; None for the whole clip in every picture.
+    azimuth, elevation, focus, blood
+        As in `draw_clip`.
     sound
         What is heard, as `VideoFile` takes it; None for a silent video.
     draw_over
@@ -56,26 +52,12 @@ def write_clip(
     AppError
         The file cannot be written.
     """
-    sampled = np.linspace(0, len(clip) - 1, _POSES_SEEN).astype(int).tolist()
-    extent = [clip.poses[number] for number in sampled] if focus is None else []
-    context = create_context()
-    renderer = PortraitRenderer(context, size)
-    try:
-        with VideoFile(path, size, clip.rate, sound, codec) as video:
-            for number in range(len(clip)):
-                pose, now = clip.poses[number], number / clip.rate
-                picture = renderer.portrait(
-                    character,
-                    pose,
-                    azimuth=azimuth,
-                    elevation=elevation,
-                    focus=None if focus is None else focus(pose, now),
-                    extent=extent,
-                    blood=blood,
-                )
-                if draw_over is not None:
-                    draw_over(picture, now)
-                video.write(picture, now)
-    finally:
-        renderer.release()
-        context.release()
+    pictures = draw_clip(
+        character, clip, size, azimuth=azimuth, elevation=elevation, focus=focus, blood=blood
+    )
+    with closing(pictures), VideoFile(path, size, clip.rate, sound, codec) as video:
+        for number, picture in enumerate(pictures):
+            now = number / clip.rate
+            if draw_over is not None:
+                draw_over(picture, now)
+            video.write(picture, now)

@@ -15,7 +15,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.ui.canvas import Canvas, text_width
 from cubeling.app.ui.palette import INK, QUIET
 from cubeling.characters import Character, Clip, Pose
-from cubeling.characters.rendering import PAPER_BGR, PortraitRenderer, side_by_side
+from cubeling.characters.rendering import PAPER_BGR, PortraitRenderer, side_by_side, standing_pose
 from cubeling.files import whole_file
 
 Image = NDArray[np.uint8]
@@ -98,18 +98,6 @@ def frame_sheet(title: str, frames: Sequence[tuple[str, Image]]) -> Image:
     pictures = [_with_caption(picture, caption) for caption, picture in frames]
     rows = side_by_side(pictures, min(FRAME_COLUMNS, len(pictures)))
     return _sheet(title, quantity(len(frames), "picture"), [rows])
-
-
-def standing_pose(character: Character) -> Pose:
-    """Return the first pose of a character's idle clip, or its rest pose.
-
-    Without an idle clip, the first pose of the first clip is used if the rest pose has its hips on
-    the ground, as motion capture may have.
-    """
-    idle = next((c for name, c in character.clips.items() if name.lower().endswith("idle")), None)
-    if idle is None and character.bounds[0, 1] < -0.2 * character.height:
-        idle = next(iter(character.clips.values()), None)
-    return character.skeleton.rest if idle is None else idle.sample(0.0)
 
 
 def trim(picture: Image) -> Image:

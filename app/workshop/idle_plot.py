@@ -64,9 +64,11 @@ def draw(database: IdleDatabase, title: str) -> Figure:
     figure = Figure(figsize=SIZE_IN, layout="constrained")
     figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR, fontsize=15)
     top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=(2.6, 1.0))[:, 0]
-    left, right = top.subfigures(1, 2, squeeze=False, width_ratios=(1.7, 1.0))[0]
     balances = [name for name in BALANCES if name in database.by_balance]
     columns = min(MAX_POSTURES, max(len(own) for own in database.by_balance.values()))
+    # As wide as the postures are, and at least as their titles.
+    share = max(0.42, 1.7 * columns / MAX_POSTURES)
+    left, right = top.subfigures(1, 2, squeeze=False, width_ratios=(share, 1.0))[0]
     for axes, name in zip(np.atleast_1d(left.subplots(len(balances), 1)), balances, strict=True):
         _draw_postures(axes, database, name, columns)
     graph, dwells = right.subplots(2, 1, height_ratios=(1.35, 1.0))
@@ -155,7 +157,8 @@ def _draw_shift(axes: Axes, name: str, after: str, chance: float) -> None:
     else:
         way = end - start
         bend, apart = 0.18, 40.0
-        label = (start + end) / 2 + 0.19 * np.array([way[1], -way[0]])
+        # Nearer to its start: in the middle, those of the arrows inside would meet.
+        label = start + 0.42 * way + 0.15 * np.array([way[1], -way[0]])
     arrow = FancyArrowPatch(
         (float(start[0]), float(start[1])),
         (float(end[0]), float(end[1])),

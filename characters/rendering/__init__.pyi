@@ -2,6 +2,11 @@ from cubeling.characters.rendering.context import (
     create_context as create_context,
     draws_in_software as draws_in_software,
 )
+from cubeling.characters.rendering.drawing import (
+    draw_clip as draw_clip,
+    draw_picture as draw_picture,
+    standing_pose as standing_pose,
+)
 from cubeling.characters.rendering.portrait import (
     PAPER_BGR as PAPER_BGR,
     PortraitRenderer as PortraitRenderer,

@@ -72,6 +72,8 @@ class RobotNode(MemberEndpoint):
             for kind in ("status", "emotion", "action")
             for pattern in follows
         )
+        self.unknown_actions: list[str] = []
+        """The actions that the robot lacks, each once and `MAX_ENTRIES` of them at most."""
         self._robot = robot
         self._expressed: Emotion | None = None
         self._state_publisher = StatePublisher()
@@ -162,6 +164,8 @@ class RobotNode(MemberEndpoint):
             return True
         if name not in catalogue.motions + catalogue.sounds:
             self.counts["unknown"] += 1
+            if name not in self.unknown_actions and len(self.unknown_actions) < m.MAX_ENTRIES:
+                self.unknown_actions.append(name)
             return True
         try:
             self._robot.play(name)

@@ -34,9 +34,9 @@ def graph(
     A .toml file next to the character describes them; see docs/motion-files.md. Without such a
     file, the built-in motions for the character's clips are shown.
 
-    Graphviz draws the .dot file: [cyan]dot -Tsvg human.dot -o human.svg[/]
+    Graphviz draws the .dot file: dot -Tsvg human.dot -o human.svg
 
-    Example: [cyan]cubeling character graph human -o human.dot[/]
+    Example: cubeling character graph human -o human.dot
     """
     if output is not None:
         check_output(output, "graph", (".dot",), overwrite=overwrite)

@@ -59,7 +59,7 @@ def inspect_command(
     The skeleton shows the recognised body part of each joint. A motion without a body is drawn as
     a stick figure: left is blue, right is red.
 
-    Example: [cyan]cubeling character inspect human --clips -o human-pictures[/]
+    Example: cubeling character inspect human --clips -o human-pictures
     """
     console = Console()
     folder = output or Path(f"{Path(character).stem}-pictures")

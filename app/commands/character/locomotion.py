@@ -56,10 +56,10 @@ def locomotion(
     """Make the walking and running clips of a character from your own recordings.
 
     One walk is enough. The best cycle of each recording is retargeted to the character and varied
-    for all the curves that steering needs, without sliding feet. Repeat [bold]--walk[/] and
-    [bold]--run[/] for recordings of curves.
+    for all the curves that steering needs, without sliding feet. Repeat --walk and
+    --run for recordings of curves.
 
-    Example: [cyan]cubeling character locomotion me.glb --walk walk.bvh --run run.bvh -o my.glb[/]
+    Example: cubeling character locomotion me.glb --walk walk.bvh --run run.bvh -o my.glb
     """
     if not walk:
         raise AppError("no walk: give at least one recording with --walk")

@@ -1,20 +1,14 @@
 """`cubeling robot`: a file for each of its commands."""
 
-import typer
-
+from cubeling.app.command_group import CommandGroup, former_spellings
 from cubeling.app.commands.robot.conform import conform
 from cubeling.app.commands.robot.ports import list_
 from cubeling.app.commands.robot.simulate import simulate
 from cubeling.app.commands.robot.trial import try_
 
-app = typer.Typer(
-    help="Simulate, try out and test robots, and list the serial ports.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
+app = CommandGroup("Simulate, try out and test robots, and list the serial ports.")
 
 app.command()(conform)
-app.command("try")(try_)
+app.command("try", context_settings=former_spellings({"settings": "robot-settings"}))(try_)
 app.command()(simulate)
 app.command("list")(list_)

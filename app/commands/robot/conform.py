@@ -46,7 +46,7 @@ def conform(
     The exit code is 0 if the robot passes all checks that were run, 1 if not, 2 if no robot
     answers.
 
-    Example: [cyan]cubeling robot conform sim[/]
+    Example: cubeling robot conform sim
     """
     from cubeling.app.commands.robot.conformance_report import (
         SVG_TEMPLATE,

@@ -9,7 +9,7 @@ from cubeling.app.ui.literal_text import literal_text
 def list_() -> None:
     """List the serial ports of this computer and the robots that may be connected to them.
 
-    Example: [cyan]cubeling robot list[/]
+    Example: cubeling robot list
     """
     from cubeling.robot import serial_ports
 

@@ -29,30 +29,30 @@ def simulate(
     The port is a pseudo-terminal (on Windows a TCP port). Any program that speaks the robot's
     protocol can open it.
 
-    Example: [cyan]cubeling robot simulate[/], then in another terminal
-    [cyan]cubeling play companion --robot PORT[/] with the port that it printed.
+    Example: cubeling robot simulate, then in another terminal
+    cubeling play companion --robot PORT with the port that it printed.
 
-    Faults, as in [cyan]cubeling robot simulate "cubeling?drop=0.05&stall=1s/10s"[/]:
+    Faults, as in cubeling robot simulate "cubeling?drop=0.05&stall=1s/10s":
 
-    [bold]drop=0.05[/], [bold]dup=0.02[/], [bold]split=0.1[/]   probability that a frame is lost,
+    drop=0.05, dup=0.02, split=0.1   probability that a frame is lost,
     duplicated, split in two
 
-    [bold]flip=0.001[/]   probability for each byte that one of its bits is flipped
+    flip=0.001   probability for each byte that one of its bits is flipped
 
-    [bold]babble=200[/]   noise between the frames, in bytes a second
+    babble=200   noise between the frames, in bytes a second
 
-    [bold]delay=20ms[/], [bold]delay=20ms~5ms[/]   latency, with jitter
+    delay=20ms, delay=20ms~5ms   latency, with jitter
 
-    [bold]stall=1s[/], [bold]stall=1s/10s[/]   it hangs for 1 s, on average every 20 s or every 10 s
+    stall=1s, stall=1s/10s   it hangs for 1 s, on average every 20 s or every 10 s
 
-    [bold]unplug=30s[/], [bold]unplug=30s/2s[/]   it is unplugged on average every 30 s, for 1 s or
+    unplug=30s, unplug=30s/2s   it is unplugged on average every 30 s, for 1 s or
     for 2 s; here the line is silent meanwhile, as a pseudo-terminal cannot disappear and come back
 
-    [bold]reboot=60s[/]   it reboots, on average every 60 s
+    reboot=60s   it reboots, on average every 60 s
 
-    [bold]seed=7[/]   seed of the random numbers
+    seed=7   seed of the random numbers
 
-    The same options work in every URL: [cyan]--robot "sim:cubeling?drop=0.05"[/].
+    The same options work in every URL: --robot "sim:cubeling?drop=0.05".
     """
     from cubeling.robot import RobotError, SimulatedPort, simulator_of
 

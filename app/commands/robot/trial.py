@@ -46,7 +46,10 @@ def try_(
         ),
     ] = None,
     settings: Annotated[
-        Path | None, typer.Option(help="A .toml file for the robot: what it does for each mood.")
+        Path | None,
+        typer.Option(
+            "--robot-settings", help="A .toml file for the robot: what it does for each mood."
+        ),
     ] = None,
 ) -> None:
     """Let a robot show its moods one after the other, and report the result of each.
@@ -59,7 +62,7 @@ def try_(
 
     The exit code is 1 if the robot acknowledged and showed nothing at all.
 
-    Example: [cyan]cubeling robot try sim:pleo --mood happy[/]
+    Example: cubeling robot try sim:pleo --mood happy
     """
     from cubeling.app.commands.robot.trials import trials_of
     from cubeling.robot import RobotError, connect

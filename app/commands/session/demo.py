@@ -12,7 +12,7 @@ from rich.console import Console
 
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
 from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
-from cubeling.app.commands.session.play import (
+from cubeling.app.commands.session.play_options import (
     DEFAULT_CAMERA,
     FolderOption,
     OutputOption,
@@ -58,7 +58,7 @@ def demo(
     plays in it as if it were live. Without a display, the recording is rendered to demo.mp4.
     A simulated robot on a real serial port shows the mood.
 
-    Example: [cyan]cubeling demo follow --recording[/]
+    Example: cubeling demo follow --recording
     """
     check_scenario(scenario)
     from cubeling.app.session import SessionOptions

@@ -36,8 +36,8 @@ def export(
 
     Every row names its session, its participant and its condition. See docs/exporting.md.
 
-    Example: [cyan]cubeling export recordings/follow.mcap recordings/sketch.mcap -o study
-    --participant P1 --participant P2[/]
+    Example: cubeling export recordings/follow.mcap recordings/sketch.mcap -o study
+    --participant P1 --participant P2
     """
     from cubeling.app.workshop.exporting import ExportedSession, export as write_tables
     from cubeling.app.workshop.exporting.writing import EXPORT_FILES

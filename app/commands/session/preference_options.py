@@ -85,7 +85,7 @@ FLAGS: dict[str, Flag] = {
         panels_of,
     ),
     "panels_shown": Flag("--show-panels/--hide-panels", "Begin with the open panels shown.", bool),
-    "window_size": Flag("--window-size", "Size of the window, as 1280x720.", str, size_of),
+    "window_size": Flag("--size", "Size of the window, as 1280x720.", str, size_of),
     "full_screen": Flag("--full-screen/--windowed", "Fill the screen.", bool),
     "mirror": Flag("--mirror/--no-mirror", "Show the picture as in a mirror.", bool),
     "volume": Flag(

@@ -8,13 +8,23 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cubeling.app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
+from cubeling.app.commands.access import (
+    Broker,
+    Ca,
+    PasswordFile,
+    PlayerName,
+    Site,
+    check_publisher,
+    publisher,
+)
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
-from cubeling.app.commands.session.play import (
+from cubeling.app.commands.session.play_options import (
     ALL_REALISM,
+    CHARACTER_GROUP,
     INSIDE_HELP,
+    PICTURE_GROUP,
     CharacterOption,
     CodecOption,
     FolderOption,
@@ -40,6 +50,8 @@ from cubeling.app.ui.display import has_display
 from cubeling.characters import check_controller
 from cubeling.robot.network import DEFAULT_SITE
 
+CHECK_GROUP = "What is computed, and how fast"
+
 
 @with_preferences
 def replay(
@@ -47,7 +59,10 @@ def replay(
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
     character: CharacterOption = None,
     controller: Annotated[
-        str | None, typer.Option(help="Move the character with another controller.")
+        str | None,
+        typer.Option(
+            help="Move the character with another controller.", rich_help_panel=CHARACTER_GROUP
+        ),
     ] = None,
     motions: MotionsOption = None,
     idle: IdleOption = None,
@@ -60,7 +75,10 @@ def replay(
     overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,
     realism: RealismOption = ALL_REALISM,
-    inside: Annotated[str | None, typer.Option(help=f"{INSIDE_HELP}; else as recorded.")] = None,
+    inside: Annotated[
+        str | None,
+        typer.Option(help=f"{INSIDE_HELP}; else as recorded.", rich_help_panel=PICTURE_GROUP),
+    ] = None,
     quality: QualityOption = AUTO_QUALITY,
     sounds: SoundsOption = None,
     start: StartOption = 0.0,
@@ -73,19 +91,29 @@ def replay(
             "--from",
             help="Take the recorded channels up to this one, and compute the others: camera "
             "(compute all), state, controls, appearance, command or pose.",
+            rich_help_panel=CHECK_GROUP,
         ),
     ] = "camera",
     fast: Annotated[
         bool,
         typer.Option(
-            "--fast", help="With a real robot, play as fast as possible, not in real time."
+            "--fast",
+            help="With a real robot, play as fast as possible, not in real time.",
+            rich_help_panel=CHECK_GROUP,
         ),
     ] = False,
     salvage: Annotated[
-        bool, typer.Option(help="Play the intact part of a cut-off session.")
+        bool,
+        typer.Option(
+            help="Play the intact part of a cut-off session.", rich_help_panel=CHECK_GROUP
+        ),
     ] = False,
     check: Annotated[
-        bool, typer.Option(help="Process the frames again and compare every recorded channel.")
+        bool,
+        typer.Option(
+            help="Process the frames again and compare every recorded channel.",
+            rich_help_panel=CHECK_GROUP,
+        ),
     ] = False,
     mqtt: Broker = None,
     player: PlayerName = None,
@@ -101,9 +129,9 @@ def replay(
     all keys. Without a display and without --output, nothing is drawn and the summary is printed.
     With a real robot, the session plays in real time.
 
-    Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
+    Example: cubeling replay recordings/companion.mcap --output companion.mp4
     """
-    from cubeling.app.running.option_checks import check_output_paths, check_part
+    from cubeling.app.running.option_checks import check_inputs, check_output_paths, check_part
     from cubeling.app.session import SessionOptions, check_stage, open_session_file
 
     with ExitStack() as closing:
@@ -117,17 +145,25 @@ def replay(
             inside_of(inside)
         record_codec, video_codec = codecs_of(codec, record, output)
         chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
-        check_output_paths(
-            SessionOptions(
-                scenario=scenario or "",
-                source=str(session),
-                record=record,
-                codec=record_codec,
-                video_codec=video_codec,
-                output=output,
-                overwrite=overwrite,
-            )
+        check_publisher(mqtt, player)
+        asked = SessionOptions(
+            scenario=scenario or "",
+            source=str(session),
+            character=character,
+            motions=tuple(motions or ()),
+            idle=idle,
+            personality=personality,
+            robot=robot,
+            robot_settings=robot_settings,
+            sounds=sounds,
+            record=record,
+            codec=record_codec,
+            video_codec=video_codec,
+            output=output,
+            overwrite=overwrite,
         )
+        check_output_paths(asked)
+        check_inputs(asked)
         # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
         from cubeling.app.commands.session.progress import ProgressLines, play_session
         from cubeling.app.running.replay_check import check_session

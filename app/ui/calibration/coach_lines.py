@@ -13,15 +13,13 @@ from cubeling.app.errors import AppError
 from cubeling.app.ui.calibration.coach import draw_coverage, words_of
 from cubeling.app.ui.calibration.session import Advice, CalibrationSession
 from cubeling.files import write_whole
+from cubeling.tracking.calibration import ViewCoverage
 
 Picture = NDArray[np.uint8]
 
-COVERAGE_SUFFIXES = (".png", ".jpg")
-"""Suffixes of a picture of the coverage."""
-
 
 class CoachLines:
-    """Prints a line when the advice changes, and no more often than it can be read.
+    """Prints what to do, once for each kind of view, and once what is missing if that takes long.
 
     `target` is "cube" or "board".
     """
@@ -31,22 +29,46 @@ class CoachLines:
     MIN_INTERVAL_S = 0.8
     """Shortest time between two lines [s]."""
 
+    MISSING_AFTER_S = 8.0
+    """Time without a line after which what is missing is printed [s]."""
+
     def __init__(self, console: Console, target: str) -> None:
         self._console = console
         self._target = target
-        self._last = ("", -math.inf)
+        self._printed_at = -math.inf
+        self._wanted = ""  # the kind of view that is asked for
+        self._said: set[str] = set()  # while it is
 
     def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
-        """Print the advice if it is new."""
-        words, printed_at = self._last
-        new = words_of(advice.request, self._target)
-        if new == words or (
-            timestamp - printed_at < self.MIN_INTERVAL_S and advice.request != "done"
-        ):
+        """Print the advice if it is new, or else what is missing if it is time to."""
+        coverage = advice.coverage
+        wanted = coverage.next_kind()
+        if wanted != self._wanted:
+            self._wanted = wanted
+            self._said.clear()
+        words, waited = words_of(advice.request, self._target), timestamp - self._printed_at
+        if words in self._said and waited >= self.MISSING_AFTER_S:
+            words = f"Still missing: {_missing(coverage)}"
+            if "missing" in self._said:
+                return
+            self._said.add("missing")
+        if words in self._said or (waited < self.MIN_INTERVAL_S and advice.request != "done"):
             return
-        self._last = new, timestamp
-        share = f"{100 * advice.coverage.progress:3.0f} %  {quantity(advice.views, 'view'):>8}"
-        self._console.print(f"[dim]{share}[/]  {new}", highlight=False)
+        if advice.request == "show":
+            self._said.clear()  # when it is back, it is asked for what was missing
+        self._said.add(words)
+        self._printed_at = timestamp
+        share = f"{100 * coverage.progress:3.0f} %  {quantity(advice.views, 'view'):>8}"
+        self._console.print(f"[dim]{share}[/]  {words}", highlight=False)
+
+
+def _missing(coverage: ViewCoverage) -> str:
+    """Return the kinds of views that are missing, each with how many there are of how many."""
+    return ", ".join(
+        f"{kind} {coverage.counts[kind]} of {needed}"
+        for kind, needed in coverage.needed.items()
+        if coverage.counts[kind] < needed
+    )
 
 
 def write_coverage(path: Path, session: CalibrationSession) -> None:

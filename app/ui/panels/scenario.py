@@ -4,8 +4,7 @@ from collections.abc import Callable
 from functools import cache
 
 from cubeling.affect import bundled_names
-from cubeling.app.pipeline.attention import LOOK_CHOICES
-from cubeling.app.pipeline.scenario import SPEED_MAP_NAMES
+from cubeling.app.pipeline.choices import LOOK_CHOICES, SPEED_MAP_NAMES
 from cubeling.app.scenarios import find_scenario
 from cubeling.app.session import SessionOptions
 from cubeling.app.ui.panels.content import Choice, Fact, Note, Panel, Slider, Widget

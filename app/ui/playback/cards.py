@@ -3,6 +3,7 @@
 from functools import lru_cache
 
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.cards.layout import HINT_ROOM
 from cubeling.app.ui.palette import ACTION_COLORS, INK, QUIET, RULE, Color
 from cubeling.app.ui.playback.keys import KeyHelp, key_rows
 from cubeling.app.ui.playback.status import EndCard
@@ -10,7 +11,9 @@ from cubeling.app.ui.playback.status import EndCard
 ACCENT = ACTION_COLORS["walk"]
 """Colour of what can be chosen or typed."""
 
-PILL_HEIGHT = 40.0
+PILL_HEIGHT, PILL_LINE, PILL_TEXT = 40.0, 26.0, 20.0
+"""Height of a small card with one line, of each further line, and of the text."""
+
 PILLS_TOP, PILL_GAP = 78.0, 8.0
 """Where small cards lie, below the hint, and the distance between them."""
 
@@ -28,22 +31,44 @@ KEYS_WIDTH, KEYS_TOP, KEYS_LEFT = 880.0, 26.0, (32.0, 508.0)
 def draw_pills(
     pills: tuple[tuple[str, Color | None], ...], width: float, scale: float
 ) -> list[Card]:
-    """Return small cards below each other: their words, and the colour of a disc or None."""
-    return [
-        _pill(words, color, PILLS_TOP + place * (PILL_HEIGHT + PILL_GAP), width, scale)
-        for place, (words, color) in enumerate(pills)
-    ]
+    """Return small cards below each other: their words, and the colour of a disc or None.
+
+    They are no wider than the room that other cards keep free for the hint: long words, such as a
+    command with the name of a file, take two lines.
+    """
+    cards, y = [], PILLS_TOP
+    for words, color in pills:
+        lines = _lines(words, min(width - 60, HINT_ROOM - 70))
+        cards.append(_pill(lines, color, y, width, scale))
+        y += PILL_HEIGHT + PILL_LINE * (len(lines) - 1) + PILL_GAP
+    return cards
+
+
+def _lines(words: str, room: float) -> tuple[str, ...]:
+    """Return words in lines that are no wider than there is room, where they have spaces."""
+    lines: list[str] = []
+    for word in words.split(" "):
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and text_width(longer, PILL_TEXT) <= room:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return tuple(lines)
 
 
 @lru_cache(maxsize=32)
-def _pill(words: str, color: Color | None, y: float, width: float, scale: float) -> Card:
-    size = 20.0 * min(1.0, (width - 60) / text_width(words, 20))
+def _pill(
+    lines: tuple[str, ...], color: Color | None, y: float, width: float, scale: float
+) -> Card:
+    longest = max(text_width(line, PILL_TEXT) for line in lines)
+    size = PILL_TEXT * min(1.0, min(width - 60, HINT_ROOM - 70) / longest)
     left = 20.0 if color is None else 46.0
-    card_width = text_width(words, size) + left + 22
-    canvas = Canvas(card_width, PILL_HEIGHT, scale)
+    card_width = max(text_width(line, size) for line in lines) + left + 22
+    canvas = Canvas(card_width, PILL_HEIGHT + PILL_LINE * (len(lines) - 1), scale)
     if color is not None:
         canvas.disc(26, PILL_HEIGHT / 2, 8, color)
-    canvas.text(left, 27, words, size, INK)
+    for number, line in enumerate(lines):
+        canvas.text(left, 27 + PILL_LINE * number, line, size, INK)
     return canvas.card((width - card_width) / 2, y)
 
 

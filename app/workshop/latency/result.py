@@ -178,12 +178,31 @@ def motion_to_photon(program: ProgramTimes, age: float) -> NDArray[np.float64]:
 
 
 def advice(result: LatencyResult, health: Health, renderer: str) -> str:
-    """Return what would help most, or "": what takes the longest comes first."""
+    """Return what would help, or "": what takes the longest comes first.
+
+    That the processor draws is said whenever drawing takes long, also if something else takes
+    longer.
+    """
+    drawn = ""
+    program = result.program
+    if program is not None and program.median > SLOW_PROGRAM_S and is_software_renderer(renderer):
+        drawn = (
+            f"the processor draws instead of a graphics card, and the program takes "
+            f"{1000 * program.median:.0f} ms: install the card's driver (see cubeling doctor), or "
+            "play with --quality reduced"
+        )
+    first = _slowest(result, health, drawn)
+    return "; ".join(dict.fromkeys(filter(None, (first, drawn))))
+
+
+def _slowest(result: LatencyResult, health: Health, drawn: str) -> str:
+    """Return what would help against what takes longest; `drawn` if that is drawing."""
     slow = result.age > SLOW_AGE_S
     if result.program is not None and result.program.median > max(SLOW_PROGRAM_S, result.age):
-        if is_software_renderer(renderer):
-            return "the processor draws instead of a graphics card: see cubeling doctor"
-        return "the program takes longest: close other programs, or take a smaller camera picture"
+        return (
+            drawn
+            or "the program takes longest: close other programs, or take a smaller camera picture"
+        )
     if result.interval > SLOW_INTERVAL_S:
         return (
             f"the camera gives only {1 / result.interval:.0f} pictures/s, mostly for lack of "

@@ -65,4 +65,10 @@ MOTIONS: tuple[
         ("neck up", 1200, 800, 1, 768),
         ("eyes and mouth", -5000, 3000, 2, 768),
     )),
+    ("shout", 2000, None, (
+        ("neck up", -1200, 1000, 1, 768),
+        ("neck sideways", 0, 600, 2, 0),
+        ("tail up", 4000, 1000, 2, 0),
+        ("eyes and mouth", -4000, 2000, 3, 768),
+    )),
 )

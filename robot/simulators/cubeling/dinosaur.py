@@ -84,6 +84,16 @@ ACTIONS = (
         2.4,
         {"neck up": JointSine(12, 8, 1, -0.25), "eyes and mouth": JointSine(-50, 30, 2, -0.25)},
     ),
+    SineMotion(
+        "shout",
+        2.0,
+        {
+            "neck up": JointSine(-12, 10, 1, -0.25),
+            "neck sideways": JointSine(0, 6, 2),
+            "tail up": JointSine(40, 10, 2),
+            "eyes and mouth": JointSine(-40, 20, 3, -0.25),
+        },
+    ),
 )
 """Motions that play once; then the loop of the mood continues."""
 

@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from rich.console import Console
 
 from cubeling import recordings
 from cubeling.affect import Emotion
+from cubeling.app.commands.bridge import EventPrinter
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.running.bridge import Bridge, RecordedPlayer
@@ -77,8 +79,8 @@ def test_a_recorded_session_drives_robots_without_a_broker(companion):
         def state(name: str) -> Any:
             return roster.members[Member("home", "robot", name)].messages.get("state")
 
-        def is_done(name: str) -> bool:  # two kisses, and a shout that it has no motion for
-            return (state(name).played, state(name).unknown) == (2, 1)
+        def is_done(name: str) -> bool:  # two kisses and a shout, each again when it is stronger
+            return (state(name).played, state(name).unknown) == (6, 0)
 
         soon(lambda: is_done("rex") and is_done("max"))
         for name in ("rex", "max"):
@@ -95,7 +97,7 @@ def test_a_recorded_session_plays_in_its_own_time(companion):
         for second in range(60):
             player.advance(100.0 + second)
             made.append(line.client.endpoint.counts["made"])
-        assert (made[2], made[5], made[-1]) == (0, 1, 3)
+        assert (made[2], made[5], made[-1]) == (0, 1, 6)
 
 
 def wrong_inputs() -> dict[str, tuple[list[str], str]]:
@@ -223,3 +225,22 @@ def test_a_hanging_broker_does_not_delay_the_picture(broker):
         os.kill(broker.pid, signal.SIGCONT)
         assert statistics.median(took) < 0.001  # of 0.033 for a frame
         assert line.client.endpoint.pending <= 64
+
+
+def test_the_bridge_says_once_that_a_robot_lacks_an_action(companion, capsys):
+    printer = EventPrinter(Console(width=200), every=False)
+    with (
+        Network() as network,
+        Bridge(network, {"bit": "sim:opencat"}, {"ann": companion}) as bridge,
+    ):
+        bridge.advance(0.0)
+        soon(lambda: len(bridge.roster.endpoint.members) == 2)
+        bridge.advance(1000.0)
+        soon(lambda: bridge.robots["bit"].counts["unknown"] == 6)
+        for _ in range(3):
+            printer.unknown_actions(bridge)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == [
+        "bit has no motion or sound 'kiss': it does nothing then",
+        "bit has no motion or sound 'shout': it does nothing then",
+    ]

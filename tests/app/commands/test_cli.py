@@ -1,6 +1,7 @@
 """The command line: its help, and one line for every error that the user can correct."""
 
 import os
+import re
 import subprocess
 import sys
 import warnings
@@ -61,11 +62,63 @@ def test_the_list_of_commands_shows_the_first_sentence_of_their_help(name):
     assert COMMANDS[name] == " ".join(first_paragraph.split())
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_every_paragraph_of_a_help_is_left_to_the_terminal_to_wrap(name):
-    command = load_command(name)
-    for each in (command, *getattr(command, "commands", {}).values()):
-        assert "\n" not in each.help.replace("\n\n", "")
+def test_the_list_of_commands_is_in_groups(cubeling):
+    _, out, _ = cubeling("--help")
+    headings = [line[:-1] for line in out.splitlines() if line.endswith(":") and line[0] != " "]
+    assert headings == ["Play", "Make", "Study", "Robots", "Look", "Options"]
+    places = [out.index(f"\n  {name} ") for name in COMMANDS]
+    assert places == sorted(places)
+
+
+def test_the_help_of_play_begins_with_the_ten_options_that_matter(cubeling):
+    _, out, _ = cubeling("play", "--help")
+    first = out.partition("\nOptions:\n")[2].partition("\n\n")[0]
+    names = re.findall(r"^  (?:-\w, )?--([\w-]+)", first, re.MULTILINE)
+    assert set(names) - {"help"} == {
+        *("source", "cube", "character", "intrinsics", "robot", "record", "output", "overwrite"),
+        *("personality", "language"),
+    }
+    assert out.index("\nOptions:\n") < out.index("\nThe character:\n") < out.index("--mqtt")
+
+
+def test_a_unit_in_brackets_is_shown(cubeling):
+    assert "Edge [mm]" in cubeling("cube", "--help")[1]
+
+
+def test_only_a_terminal_gets_colours(cubeling):
+    assert "\x1b" not in cubeling("--help")[1]
+
+
+@pytest.mark.parametrize(
+    ("line", "refused"),
+    [
+        ("speak hi --lang en -o a.abc", "a speech is written as"),
+        ("speech show none.wav --lang=ca", "none.wav"),
+        ("play companion --window-size wide", "1280x720, not as 'wide'"),
+        ("calibrate --camera missing.mp4", "cannot read the video 'missing.mp4'"),
+        ("gesture import none.bvh --from 1 --to 2 -o A", "none.bvh"),
+        ("robot try sim --seconds 0 --settings x.toml", "a mood is held for 0.1"),
+        ("replay none.mcap --from pose", "none.mcap"),
+    ],
+)
+def test_former_spellings_are_still_understood(cubeling, line, refused):
+    code, _, err = cubeling(*line.split())
+    assert code == 2
+    assert refused in err
+
+
+@pytest.mark.parametrize(
+    ("line", "former"),
+    [
+        ("speak", "--lang "),
+        ("play", "--window-size"),
+        ("calibrate", "--camera"),
+        ("gesture import", "--from"),
+        ("robot try", " --settings"),
+    ],
+)
+def test_a_help_shows_one_spelling(cubeling, line, former):
+    assert former not in cubeling(*line.split(), "--help")[1]
 
 
 def test_the_version_is_that_of_the_package(cubeling):

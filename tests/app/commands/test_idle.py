@@ -1,5 +1,6 @@
 """`cubeling idle`, and characters that stand as a person does."""
 
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -66,6 +67,20 @@ def test_shows_rests_pauses_and_shifts(cubeling, anna) -> None:
     assert "Recorded for 30.0 s" in out
     assert "then right" in out
     assert "100%" in out  # after the left foot comes the right one
+
+
+def test_a_mood_shows_what_suits_it(cubeling) -> None:
+    def rests(*mood: str) -> int:
+        code, out, _ = cubeling("idle", "show", "human", *mood)
+        assert code == 0
+        assert ("Rests, happy" in out) == bool(mood)
+        return int(re.findall(r"^ *left +(\d+)", out, re.MULTILINE)[0])
+
+    assert 0 < rests("--mood", "happy") < rests()
+
+
+def test_somebody_without_moods_stands_as_always(cubeling, anna) -> None:
+    assert "not recorded in moods" in cubeling("idle", "show", str(anna), "--mood", "happy")[1]
 
 
 @pytest.mark.slow(reason="portraits are drawn into a plot")

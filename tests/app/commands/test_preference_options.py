@@ -35,8 +35,8 @@ def test_without_a_window_no_file_is_read_or_written(cubeling, short_session, tm
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (("--window-size", "wide"), "1280x720"),
-        (("--window-size", "20x10"), "at least 320x180"),
+        (("--size", "wide"), "1280x720"),
+        (("--size", "20x10"), "at least 320x180"),
         (("--panels", "weather"), "choose from tracking, scenario"),
     ],
 )

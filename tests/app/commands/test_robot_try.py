@@ -82,7 +82,14 @@ def test_a_time_that_is_none_is_refused(cubeling):
 @in_virtual_time
 def test_what_the_robot_complains_of_is_told_in_its_own_words(cubeling, tmp_path):
     (tmp_path / "mine.toml").write_text('[moods.neutral]\nmotion = "[red]x"\nlength_s = 9\n')
-    args = ("--settings", str(tmp_path / "mine.toml"), "--mood", "neutral", "--seconds", "1.5")
+    args = (
+        "--robot-settings",
+        str(tmp_path / "mine.toml"),
+        "--mood",
+        "neutral",
+        "--seconds",
+        "1.5",
+    )
     code, out, _ = cubeling("robot", "try", "sim:pleo", *args)
     assert code == 1
     assert "not acknowledged" in out

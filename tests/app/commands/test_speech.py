@@ -113,7 +113,7 @@ def test_a_recording_is_aligned_with_the_text_of_a_file(recording, tmp_path):
         (("show", "{file}", "-o", "{folder}/plot.xyz"), "plot"),
         (("align", "{file}", "--text", "@missing.txt", "-o", "{folder}/a.TextGrid"), "cannot read"),
         (
-            ("align", "{file}", "--text", "a", "--lang", "ca", "--sphinx",
+            ("align", "{file}", "--text", "a", "--language", "ca", "--sphinx",
              "-o", "{folder}/a.TextGrid"),
             "English only",
         ),

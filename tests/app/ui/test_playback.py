@@ -9,8 +9,10 @@ import pytest
 
 from cubeling.app.output_path import dated_file, short_path
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.ui.cards.layout import HINT_ROOM
 from cubeling.app.ui.playback import timeline
 from cubeling.app.ui.playback.announcements import NOTICE_S
+from cubeling.app.ui.playback.cards import draw_pills
 from cubeling.app.ui.playback.keys import BINDINGS, key_rows, key_table
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.requests import (
@@ -91,7 +93,7 @@ def test_no_key_is_there_twice():
 
 
 def test_the_documents_have_the_table_of_keys():
-    assert key_table() in (HERE.parents[2] / "README.md").read_text()
+    assert key_table() in (HERE.parents[2] / "docs/playing.md").read_text()
 
 
 def test_the_scenario_is_told_once_what_it_is_asked(desk):
@@ -254,3 +256,15 @@ def test_files_made_by_keys_have_names_that_a_shell_takes(tmp_path, monkeypatch)
     path = dated_file(tmp_path / "Cubeling", "follow", ".mcap", NOW)
     assert short_path(path) == "~/Cubeling/follow-2026-05-04-150309.mcap"
     assert short_path(tmp_path / "my films" / "a.mcap") == f"'{tmp_path}/my films/a.mcap'"
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_a_long_notice_stays_in_the_room_of_the_hint(scale):
+    words = "Recorded 12 s. Play it: cubeling replay ~/Cubeling/companion-2026-05-04-150309.mcap"
+    (notice,) = draw_pills(((words, None),), 1280.0, scale)
+    picture = np.zeros((round(720 * scale), round(1280 * scale), 3), np.uint8)
+    notice.blend_over(picture)
+    columns = np.flatnonzero(picture.any(axis=(0, 2))) / scale
+    assert columns[0] > (1280 - HINT_ROOM) / 2
+    assert columns[-1] < (1280 + HINT_ROOM) / 2
+    assert columns[-1] - columns[0] > 300

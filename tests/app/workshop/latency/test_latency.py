@@ -45,6 +45,9 @@ QUICK, SLOW = Spread(0.02, 0.015, 0.03), Spread(0.15, 0.1, 0.3)
     [
         ({"program": QUICK}, 0.0, "Mesa Intel(R) UHD", ""),
         ({"program": SLOW}, 0.0, "llvmpipe (LLVM 15)", "cubeling doctor"),
+        ({"program": SLOW, "age": 0.2}, 0.0, "llvmpipe (LLVM 15)", "--quality reduced"),
+        ({"program": SLOW, "age": 0.2}, 0.0, "llvmpipe (LLVM 15)", "vsync"),
+        ({"program": QUICK, "age": 0.2}, 0.0, "llvmpipe (LLVM 15)", "vsync"),
         ({"program": SLOW}, 0.0, "Mesa Intel(R) UHD", "smaller camera picture"),
         ({"interval": 0.066}, 0.0, "", "only 15 pictures/s"),
         ({"age": 0.2}, 1.5, "", "buffers=1"),

@@ -1,0 +1,65 @@
+"""Files and names that a command is given: looked for before the command loads what does the work.
+
+Whoever reads a file refuses what is wrong with it; here a name with a slip is refused at once.
+"""
+
+import os
+import stat
+from collections.abc import Iterable
+from pathlib import Path
+
+from cubeling.app.errors import AppError
+
+
+def check_input(path: str | Path | None, kind: str) -> None:
+    """Refuse a file that is not there or is no file; None is one that was not named.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kind
+        What it is, for the message, as its `FileKind` calls it: "motion capture", "sound" …
+
+    Raises
+    ------
+    AppError
+        With the line that the reader of the file would end in.
+    """
+    if path is None:
+        return
+    try:
+        is_file = stat.S_ISREG(os.stat(path).st_mode)
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        reason = getattr(error, "strerror", None) or str(error)
+        raise AppError(f"cannot read the {kind} '{path}': {reason}") from None
+    if not is_file:
+        reason = "it is a folder, a pipe or a device; give a file"
+        raise AppError(f"cannot read the {kind} '{path}': {reason}")
+
+
+def check_motions(names: Iterable[str]) -> None:
+    """Refuse motions that are not there: files, characters with a clip (`fox.glb#Walk`), folders.
+
+    A bundled character with one of its clips (`human#wave`) is left to who reads it.
+    """
+    for name in names:
+        path = Path(name.partition("#")[0])
+        if path.suffix and not path.is_dir():
+            check_input(path, "motion")
+
+
+def check_character(name: str | None) -> None:
+    """Refuse a character that is neither bundled nor a file; None is the scenario's own.
+
+    Raises AppError, or CharacterError if it has no such name.
+    """
+    if name is None:
+        return
+    if Path(name).suffix:
+        check_input(name, "character")
+        return
+    from cubeling.characters import Character  # it loads numpy
+
+    if name not in Character.bundled_names():
+        Character.load(name)  # says which there are

@@ -1,0 +1,154 @@
+"""A scenario that a file of rules describes."""
+
+from typing import ClassVar
+
+import numpy as np
+
+from cubeling.affect import Personality
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.pipeline.situation import Situation
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.scenarios.presence import Presence
+from cubeling.app.scenarios.rules.file import Rule, RuleSet, event_of, read_rules
+from cubeling.app.scenarios.rules.vocabulary import ACTIONS, PACES, Intent, Moment
+from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent, RootDelta
+from cubeling.tracking import CubeControls, CubeModel
+
+HOME = RootDelta(-0.14, 0.0, 0.1)
+"""Where the character stands at first: beside the cube, to its left as the player sees it."""
+
+CLEARANCE_M = 0.1
+"""How far from the cube's centre a character stops that goes to it [m]."""
+
+PLAYER = np.array([0.0, 2.0])
+"""A point far towards the camera, (x, z) on the table [m]: where the player sits."""
+
+
+class RulesScenario:
+    """Acts by the rules of its class, which `rules_scenario` makes of a file.
+
+    A rule with `when` begins to act when its conditions begin to hold, for its time; another one
+    that begins meanwhile takes over, of several in one frame the first in the file. While none of
+    them acts, the first rule with `while` whose conditions hold does.
+    """
+
+    rules: ClassVar[RuleSet]
+    """What the file says."""
+
+    name: str
+    summary: str
+    cube: str
+    roles: tuple[str, ...]
+    character: str
+    personality: str
+    start = HOME
+    has_intensity = False
+    adjustable = ("personality",)
+
+    def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
+        self._roles = {face.name: face.role for face in cube.faces}
+        self._mood = MoodController(settings.personality or Personality.load(self.personality))
+        self._presence = Presence()
+        self._begin()
+
+    def adjust(self, settings: ScenarioSettings) -> None:
+        """Play on with another personality."""
+        self._mood.adjust(settings.personality or Personality.load(self.personality))
+
+    def _begin(self) -> None:
+        self._since: dict[int, float] = {}  # since when the conditions of a rule hold
+        self._done: set[int] = set()  # rules that have acted since their conditions hold
+        self._acting: int | None = None
+        self._until = 0.0
+
+    def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
+        """Decide on one frame; see `Scenario.update`."""
+        if inputs.clear:
+            self._mood.reset()
+            self._begin()
+        visible = self._presence.update(controls)
+        moment = Moment(controls, situation, inputs, self._roles)
+        before = self._acting
+        if visible:  # nobody is there to act before the table is known
+            begun = self._choose(moment)
+        else:
+            begun, self._acting = False, None
+        intent = Intent(hint=self.rules.hint)
+        if self._acting is not None:
+            for key, text in self.rules.rules[self._acting].actions:
+                ACTIONS[key].perform(intent, text)
+        self._check_action(intent.action, situation)
+        events: tuple[str, ...] = ()
+        if self._acting is not None and (begun or self._acting != before):
+            events = (event_of(self._acting),)
+        felt = (*(intent.events if events else ()), *inputs.events)
+        emotion = self._mood.update(controls, intent.action if visible else "idle", events=felt)
+        command = CharacterCommand(
+            timestamp=controls.timestamp,
+            locomotion=_way(intent, moment),
+            action=ActionIntent(intent.action, 1.0) if not intent.go else None,
+            visible=visible,
+        )
+        hint = intent.hint if controls.visible else "Show me the cube"
+        return Outcome(command, emotion, hint, intent.action, events=events)
+
+    def _choose(self, moment: Moment) -> bool:
+        """Choose the rule that acts; return whether one with `when` has just begun."""
+        now = moment.controls.timestamp
+        rules = self.rules.rules
+        due = [index for index, rule in enumerate(rules) if self._is_due(index, rule, moment)]
+        begun = [each for each in due if not rules[each].lasting and each not in self._done]
+        self._done.update(begun)
+        if begun:
+            self._acting, self._until = begun[0], now + rules[begun[0]].seconds
+            return True
+        acts_on = self._acting is not None and not rules[self._acting].lasting
+        if not (acts_on and now < self._until):
+            self._acting = next((each for each in due if rules[each].lasting), None)
+        return False
+
+    def _is_due(self, index: int, rule: Rule, moment: Moment) -> bool:
+        """Return whether the conditions of a rule have held for long enough."""
+        if not all(term.holds(moment) for term in rule.conditions):
+            self._since.pop(index, None)
+            self._done.discard(index)
+            return False
+        now = moment.controls.timestamp
+        return now - self._since.setdefault(index, now) >= rule.after
+
+    def _check_action(self, name: str, situation: Situation) -> None:
+        """Refuse an action that the character does not know; before its first frame, none is."""
+        if name != "idle" and situation.actions and name not in situation.actions:
+            known = ", ".join(situation.actions)
+            raise AppError(f"{self.name}: the character cannot '{name}'; it knows {known}")
+
+
+def _way(intent: Intent, moment: Moment) -> LocomotionIntent:
+    """Return where an intent lets the character go, and that it faces the player when it stands."""
+    cube, character = moment.controls.position, moment.situation.character
+    if intent.go == "home":
+        return LocomotionIntent(PACES[intent.pace], np.array([HOME.x, HOME.z]), facing=PLAYER)
+    if intent.go == "cube" and cube is not None and character is not None:
+        offset = character.table_from_character[[0, 2], 3] - cube
+        distance = float(np.linalg.norm(offset))
+        place = cube + offset * (min(CLEARANCE_M, distance) / max(distance, 1e-9))
+        return LocomotionIntent(PACES[intent.pace], place, facing=PLAYER)
+    return LocomotionIntent(facing=PLAYER)
+
+
+def rules_scenario(path: str) -> type[RulesScenario]:
+    """Return the scenario of a file of rules; raises AppError if it cannot be read."""
+    rules = read_rules(path)
+    members = {
+        "__module__": __name__,
+        "__doc__": rules.summary,
+        "rules": rules,
+        "name": rules.name,
+        "summary": rules.summary,
+        "cube": rules.cube,
+        "roles": rules.roles,
+        "character": rules.character,
+        "personality": rules.personality,
+    }
+    return type("FileScenario", (RulesScenario,), members)

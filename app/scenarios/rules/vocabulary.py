@@ -1,0 +1,227 @@
+"""The conditions and actions that a file may name: one table of each.
+
+What a condition is asked of is a `Moment`, and what an action changes is an `Intent`: neither knows
+of rules, so that dialogues can be written in the same words.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from cubeling.app.errors import AppError
+
+if TYPE_CHECKING:  # a file is checked before numpy is loaded
+    from cubeling.app.pipeline.scenario import Inputs
+    from cubeling.app.pipeline.situation import Situation
+    from cubeling.tracking import CubeControls
+
+PACES = {"walk": 2.5, "run": 4.5}
+"""AvatAR's Speed of each pace, 0…5."""
+
+PLACES = ("cube", "home")
+"""Where a character can be sent."""
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What a condition is asked of: one frame."""
+
+    controls: CubeControls
+    """What the hand does with the cube."""
+
+    situation: Situation
+    """Who and what is on the table."""
+
+    inputs: Inputs
+    """What the player asked for."""
+
+    roles: Mapping[str, str]
+    """The role of each face of the cube."""
+
+    @property
+    def distance_cm(self) -> float:
+        """From the character to the cube's centre along the table [cm]; infinite if not known."""
+        character, cube = self.situation.character, self.controls.position
+        if character is None or cube is None:
+            return math.inf
+        x, z = character.table_from_character[[0, 2], 3] - cube
+        return 100.0 * math.hypot(x, z)
+
+
+@dataclass
+class Intent:
+    """What a character is to do; actions fill it in."""
+
+    action: str = "idle"
+    """Name of an action of the character."""
+
+    go: str = ""
+    """One of `PLACES`; "" to stay."""
+
+    pace: str = "walk"
+    """One of `PACES`."""
+
+    hint: str = ""
+    """What the player reads."""
+
+    events: list[str] = field(default_factory=list)
+    """What the mood hears of."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A condition that a file may name."""
+
+    meaning: str
+    """When it holds, for the table of all."""
+
+    holds: Callable[[Moment, str], bool]
+    """Returns whether it holds, from its argument."""
+
+    argument: str = ""
+    """What follows its name: "ROLE", "NUMBER"; "" for nothing."""
+
+    default: str = ""
+    """The argument if none is given; "" where one must be."""
+
+
+@dataclass(frozen=True)
+class Action:
+    """Something that a file may let the character do."""
+
+    meaning: str
+    """What it does, for the table of all."""
+
+    perform: Callable[[Intent, str], None]
+    """Adds it to an intent."""
+
+    choices: tuple[str, ...] = ()
+    """What may be named; () for any text."""
+
+
+def _top(moment: Moment, word: str) -> bool:
+    face = moment.controls.top_face or ""
+    return word in (face, moment.roles.get(face))
+
+
+CONDITIONS: dict[str, Condition] = {
+    "always": Condition("at every moment; with when, once at the beginning", lambda _, __: True),
+    "seen": Condition("the camera sees the cube", lambda now, _: now.controls.visible),
+    "placed": Condition("the cube is put down", lambda now, _: now.controls.placed),
+    "lifted": Condition("the cube is off the table", lambda now, _: now.controls.lifted),
+    "resting": Condition("the cube lies on the table", lambda now, _: now.controls.resting),
+    "shaken": Condition("the cube is shaken", lambda now, _: now.controls.shaken),
+    "gesture": Condition(
+        "the hand makes this gesture with the cube",
+        lambda now, name: name in now.controls.gestures,
+        "NAME",
+    ),
+    "top": Condition("the face of this role, or of this name, points up", _top, "ROLE"),
+    "right": Condition(
+        "the cube was turned so far to the right since it was put down",
+        lambda now, turns: now.controls.turns >= float(turns),
+        "TURNS",
+        "0.25",
+    ),
+    "left": Condition(
+        "the cube was turned so far to the left since it was put down",
+        lambda now, turns: now.controls.turns <= -float(turns),
+        "TURNS",
+        "0.25",
+    ),
+    "near": Condition(
+        "the character is nearer to the cube than this",
+        lambda now, cm: now.distance_cm < float(cm),
+        "CM",
+        "15",
+    ),
+    "far": Condition(
+        "the character is farther from the cube than this",
+        lambda now, cm: math.inf > now.distance_cm > float(cm),
+        "CM",
+        "30",
+    ),
+    "cleared": Condition("the player presses C", lambda now, _: now.inputs.clear),
+}
+"""The conditions by name; a new one is a line here."""
+
+MOMENTARY = ("placed", "shaken", "gesture", "cleared")
+"""Conditions that hold in a single frame."""
+
+NUMBERS = ("TURNS", "CM")
+"""Arguments that are numbers."""
+
+ACTIONS: dict[str, Action] = {
+    "do": Action(
+        "perform an action of the character: wave, cheer, nod, kiss, shout …",
+        lambda intent, name: setattr(intent, "action", name),
+    ),
+    "go": Action(
+        "go to the cube, or back to where it stood first",
+        lambda intent, place: setattr(intent, "go", place),
+        PLACES,
+    ),
+    "pace": Action(
+        "how it goes there", lambda intent, pace: setattr(intent, "pace", pace), tuple(PACES)
+    ),
+    "feel": Action(
+        "let an event of the personality happen to the mood: shaken, reached, chased, ignored …",
+        lambda intent, event: intent.events.append(event),
+    ),
+    "hint": Action("what the player reads", lambda intent, text: setattr(intent, "hint", text)),
+}
+"""The actions by the key that names them; a new one is a line here."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """A condition with its argument, as a file names it."""
+
+    name: str
+    """One of `CONDITIONS`."""
+
+    argument: str = ""
+    """Its argument; "" for none."""
+
+    negated: bool = False
+    """Whether it must not hold."""
+
+    @classmethod
+    def parse(cls, text: str) -> Term:
+        """Read a term such as "lifted", "not resting", "top kiss" or "near 10".
+
+        >>> Term.parse("not near 10")
+        Term(name='near', argument='10', negated=True)
+
+        Raises
+        ------
+        AppError
+            There is no such condition, or its argument is missing or of no use.
+        """
+        words = text.split()
+        negated = words[:1] == ["not"]
+        name, *rest = words[negated:] or [""]
+        if name not in CONDITIONS:
+            raise AppError(f"'{text}' is no condition: choose one of {', '.join(CONDITIONS)}")
+        condition = CONDITIONS[name]
+        argument = " ".join(rest) or condition.default
+        if bool(argument) != bool(condition.argument):
+            wanted = f"as in '{name} {condition.argument}'" if condition.argument else "nothing"
+            raise AppError(f"'{text}': after '{name}' comes {wanted}")
+        if condition.argument in NUMBERS and not _is_positive(argument):
+            raise AppError(f"'{text}': '{argument}' is no number of {condition.argument.lower()}")
+        return cls(name, argument, negated)
+
+    def holds(self, moment: Moment) -> bool:
+        """Return whether it holds at a moment."""
+        return CONDITIONS[self.name].holds(moment, self.argument) != self.negated
+
+
+def _is_positive(text: str) -> bool:
+    try:
+        return 0.0 < float(text) < math.inf
+    except ValueError:
+        return False

@@ -1,0 +1,206 @@
+"""Scenarios that are a file of rules."""
+
+import dataclasses
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cubeling.app.errors import AppError
+from cubeling.app.scenarios import Inputs, Situation, make_scenario
+from cubeling.app.scenarios.rules.file import read_rules
+from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, Term
+from cubeling.app.speaking.lines import bundled_languages, bundled_lines
+from cubeling.tracking import CubeModel
+
+ROOT = Path(__file__).parents[3]
+PAGE = (ROOT / "docs/rules.md").read_text("utf-8")
+
+RULES = """
+summary = "a test"
+hint = "usual"
+[[rule]]
+when = "shaken"
+do = "cheer"
+say = "Hooray!"
+for = 1.0
+[[rule]]
+when = "lifted"
+do = "wave"
+say = ["Hello!", "Again!"]
+hint = "waving"
+for = 2.0
+[[rule]]
+while = ["resting", "top kiss"]
+do = "kiss"
+[[rule]]
+when = "not lifted"
+after = 5.0
+feel = "ignored"
+hint = "bored"
+"""
+
+
+@pytest.fixture
+def rules(tmp_path):
+    path = tmp_path / "test.toml"
+    path.write_text(RULES)
+    return str(path)
+
+
+@pytest.fixture
+def play(rules, hand):
+    """Returns the outcome of a frame of the hand, which the scenario is shown first."""
+    scenario = make_scenario(rules)
+    scenario.update(hand.frame(), Situation(), Inputs())
+
+    def update(controls, inputs=None):
+        return scenario.update(controls, Situation(), inputs or Inputs())
+
+    return update
+
+
+def test_a_rule_acts_when_its_condition_begins_and_for_its_time(play, hand):
+    begun = play(hand.frame(resting=False, lifted=True))
+    assert (begun.command.activity, begun.hint, begun.events) == ("wave", "waving", ("rule 2",))
+    later = [play(controls) for controls in hand.wait(1.9)]
+    assert {outcome.command.activity for outcome in later} == {"wave"}
+    assert not any(outcome.events for outcome in later), "it is said once"
+    over = [play(controls) for controls in hand.wait(0.2)][-1]
+    assert (over.command.activity, over.hint) == ("idle", "usual"), "the cube is still lifted"
+
+
+def test_another_rule_takes_over(play, hand):
+    play(hand.frame(resting=False, lifted=True))
+    assert play(hand.frame(gestures=("shaken",))).command.activity == "cheer"
+
+
+def test_a_lasting_rule_acts_while_all_its_conditions_hold(play, hand):
+    kiss = next(f.name for f in CubeModel.load("companion").faces if f.role == "kiss")
+    shown = hand.frame(top_face=kiss, resting=True)
+    assert play(shown).command.activity == "kiss"
+    assert [play(each).command.activity for each in hand.wait(10.0)][-1] == "kiss"
+    assert play(hand.frame(resting=False)).command.activity == "idle"
+
+
+def test_a_rule_may_wait(play, hand):
+    hints = [play(controls).hint for controls in hand.wait(6.0)]
+    assert hints[0] == "usual"
+    assert hints.count("bored") == pytest.approx(30, abs=2), "the last of six seconds"
+
+
+def test_the_key_c_begins_again(play, hand):
+    play(hand.frame(resting=False, lifted=True))
+    assert play(hand.frame(), Inputs(clear=True)).command.activity == "wave"
+    assert play(hand.frame(resting=True, lifted=False)).command.activity == "wave"
+
+
+def test_an_action_that_the_character_lacks_is_named(rules, hand):
+    scenario = make_scenario(rules)
+    known = Situation(actions=("nod", "cheer"))
+    scenario.update(hand.frame(), known, Inputs())
+    with pytest.raises(AppError, match=r"cannot 'wave'; it knows nod, cheer"):
+        scenario.update(hand.frame(resting=False, lifted=True), known, Inputs())
+
+
+def test_what_rules_say_are_the_lines_of_the_scenario(rules):
+    assert bundled_languages(rules) == ("en",)
+    said = bundled_lines(rules, "en")
+    assert said is not None
+    assert said.lines == {"rule 1": ("Hooray!",), "rule 2": ("Hello!", "Again!")}
+    with pytest.raises(AppError, match="no lines in 'es'"):
+        bundled_lines(rules, "es")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "there is none"),
+        ("[[rule]]\ndo = 'wave'", "either when or while"),
+        ("[[rule]]\nwhen = 'lifted'", "does nothing"),
+        ("[[rule]]\nwhen = 'lift'\ndo = 'wave'", "'lift' is no condition"),
+        ("[[rule]]\nwhen = 'top'\ndo = 'wave'", "as in 'top ROLE'"),
+        ("[[rule]]\nwhen = 'lifted 3'\ndo = 'wave'", "comes nothing"),
+        ("[[rule]]\nwhen = 'near soon'\ndo = 'wave'", "no number of cm"),
+        ("[[rule]]\nwhen = 'shaken'\nafter = 1\ndo = 'wave'", "a moment only"),
+        ("[[rule]]\nwhile = 'seen'\nfor = 1\ndo = 'wave'", "as long as"),
+        ("[[rule]]\nwhen = 'seen'\ngo = 'moon'", "cube, home"),
+        ("[[rule]]\nwhen = 'seen'\nwave = 'yes'", "means nothing here"),
+        ("[[rule]]\nwhen = 3\ndo = 'wave'", "when must be"),
+    ],
+)
+def test_a_wrong_file_is_refused_with_its_name_before_anything_loads(cubeling, text, said):
+    Path("mine.toml").write_text(text)
+    code, _, err = cubeling("play", "mine.toml")
+    assert code == 2
+    assert err.startswith("cubeling: mine.toml: ")
+    assert said in err
+    assert err.count("\n") == 1
+
+
+def test_a_missing_file_is_one_line(cubeling):
+    assert cubeling("play", "none.toml")[2].startswith("cubeling: cannot read the scenario 'none")
+
+
+def test_a_cube_without_a_role_of_a_rule_is_refused(cubeling, rules):
+    code, _, err = cubeling("play", rules, "--cube", "locomotion")
+    assert code == 2
+    assert "missing: kiss" in err
+
+
+@pytest.mark.parametrize("condition", CONDITIONS)
+def test_every_condition_can_be_asked_and_denied(condition, hand, rules):
+    argument = {"NAME": "shaken", "ROLE": "kiss"}.get(CONDITIONS[condition].argument, "")
+    term = Term.parse(f"{condition} {argument}")
+    scenario = make_scenario(rules)
+    moment = _moment(scenario, hand.frame())
+    assert term.holds(moment) != dataclasses.replace(term, negated=True).holds(moment)
+
+
+def _moment(scenario, controls):
+    from cubeling.app.scenarios.rules.vocabulary import Moment
+
+    return Moment(controls, Situation(), Inputs(), scenario._roles)
+
+
+def test_the_page_lists_every_condition_and_action():
+    conditions, actions = PAGE.partition("<!-- actions -->")[::2]
+    named = re.findall(r"^\| `(\w+)[^`]*` \| (.*) \|$", conditions.partition("<!-- cond")[2], re.M)
+    assert [name for name, _ in named] == list(CONDITIONS)
+    for name, meaning in named:
+        assert meaning.partition(";  ")[0].startswith(CONDITIONS[name].meaning)
+    assert re.findall(r"^\| `(\w+)` \|", actions, re.M) == list(ACTIONS)
+
+
+def test_the_example_of_the_page_can_be_read(tmp_path):
+    (example,) = re.findall(r"^```toml\n(.*?)^```", PAGE, re.S | re.M)
+    (tmp_path / "page.toml").write_text(example)
+    assert len(read_rules(tmp_path / "page.toml").rules) == 3
+
+
+@pytest.mark.slow(reason="a session is replayed")
+def test_a_new_file_of_rules_plays(cubeling, bundled_session):
+    assert cubeling("scenario", "new", "hello.toml")[0] == 0
+    assert cubeling("scenario", "new", "hello.toml")[0] == 2, "it exists"
+    part = ("--no-pictures", "--end", "2", "--robot", "none")
+    code, out, _ = cubeling("replay", bundled_session, "--scenario", "hello.toml", *part)
+    assert code == 0
+    assert "hello.toml" in out
+
+
+@pytest.mark.slow(reason="a test runs its test in a program of its own")
+def test_a_new_package_has_a_test_that_passes(cubeling):
+    assert cubeling("scenario", "new", "big_hello")[0] == 0
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "big_hello"]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=Path.cwd())
+    assert "1 passed" in run.stdout
+
+
+@pytest.mark.parametrize("name", ["9a", "class", "Hello", "a-b", "follow"])
+def test_a_name_that_cannot_be_one_is_refused(cubeling, name):
+    code, _, err = cubeling("scenario", "new", name)
+    assert code == 2
+    assert err.count("\n") == 1
+    assert not Path(name).exists()
