@@ -71,6 +71,13 @@ class ArmClearance:
         return poses
 
 
+def share_inside(rig: Rig, pose: Pose) -> float:
+    """Return which share of the skin of forearms and hands is inside the body; of the worse arm."""
+    placements = pose.globals(rig.skeleton)
+    arms = [_ArmSkin.of(rig, placements, side) for side in SIDES]
+    return max((arm.share_inside(0.0) for arm in arms if arm is not None), default=0.0)
+
+
 def _arm(rig: Rig, side: str) -> tuple[int, int]:
     """Return the joints where an arm begins and where its hand, or what it has, begins."""
     joints = rig.anatomy.joints
@@ -85,22 +92,48 @@ def _outwards(side: str) -> float:
 
 def _clear_angle(rig: Rig, placements: Array, side: str) -> float:
     """Return the smallest turn of an arm at which its skin is outside the body [rad]."""
-    if f"{side}UpperArm" not in rig.anatomy.joints or not rig.meshes:
+    arm = _ArmSkin.of(rig, placements, side)
+    if arm is None:
         return 0.0
-    upper, hand = _arm(rig, side)
-    fore = rig.anatomy.joint(f"{side}LowerArm")
-    sign, shoulder = _outwards(side), in_common_axes(rig, placements[upper, :3, 3])
-    points, movers = _placed_skin(rig, placements)
-    arm = points[np.isin(movers, subtree(rig.skeleton, hand if fore is None else fore))]
-    body = points[np.isin(movers, _trunk_joints(rig))]
-    if len(arm) < 3 or len(body) < 3:
-        return 0.0
-    outline = _Outline.of(body * [sign, 1.0, 1.0])
-    for angle in np.arange(0.0, MAX_ANGLE_RAD, _STEP_RAD):
-        turned = shoulder + rotations.rotate(rotations.about("z", sign * angle), arm - shoulder)
-        if outline.contains(turned * [sign, 1.0, 1.0]).mean() <= _MAX_INSIDE:
-            return float(angle)
-    return float(MAX_ANGLE_RAD)
+    angles = np.arange(0.0, MAX_ANGLE_RAD, _STEP_RAD)
+    clear = (float(angle) for angle in angles if arm.share_inside(angle) <= _MAX_INSIDE)
+    return next(clear, float(MAX_ANGLE_RAD))
+
+
+@dataclass(frozen=True)
+class _ArmSkin:
+    """The skin of a forearm with its hand beside a body: +x is away from it, +y up, +z ahead."""
+
+    shoulder: Array
+    """Where the arm begins, (3,) [m]."""
+
+    points: Array
+    """Vertices, (n, 3) [m]."""
+
+    outline: "_Outline"
+    """The body beside it."""
+
+    @staticmethod
+    def of(rig: Rig, placements: Array, side: str) -> "_ArmSkin | None":
+        """Return that of a side for joint placements (joints, 4, 4); None without an arm."""
+        if f"{side}UpperArm" not in rig.anatomy.joints or not rig.meshes:
+            return None
+        upper, hand = _arm(rig, side)
+        fore = rig.anatomy.joint(f"{side}LowerArm")
+        points, movers = _placed_skin(rig, placements)
+        arm = points[np.isin(movers, subtree(rig.skeleton, hand if fore is None else fore))]
+        body = points[np.isin(movers, _trunk_joints(rig))]
+        if not len(arm) or not len(body):
+            return None
+        mirror = np.array([_outwards(side), 1.0, 1.0])
+        shoulder = in_common_axes(rig, placements[upper, :3, 3])
+        return _ArmSkin(shoulder * mirror, arm * mirror, _Outline.of(body * mirror))
+
+    def share_inside(self, angle: float) -> float:
+        """Return which share of the vertices is inside the body if the arm is turned away [rad]."""
+        turn = rotations.about("z", np.asarray(angle))
+        turned = self.shoulder + rotations.rotate(turn, self.points - self.shoulder)
+        return float(self.outline.contains(turned).mean())
 
 
 def _trunk_joints(rig: Rig) -> list[int]:

@@ -50,6 +50,24 @@ def bone_change(poses: Pose, rig: Rig) -> float:
     return float(np.abs(lengths[1] / at_rest - 1.0).max())
 
 
+def trunk_tilt(poses: Pose, rig: Rig) -> Array:
+    """Return the angle from hips to head against that at rest, (frames,) [rad]; 0 without them."""
+    joints = [rig.anatomy.joint(part) for part in ("hips", "head")]
+    if None in joints:
+        return np.zeros(len(poses.rotations))
+    hips, head = (
+        rotations.rotate(rig.common_from_skeleton, pose.globals(rig.skeleton)[:, joint, :3, 3])
+        for joint in joints
+        for pose in [poses]
+    )
+    trunk = head - hips
+    at_rest = rig.rest_positions[joints[1]] - rig.rest_positions[joints[0]]
+    # A body may lean at rest; to either side is as far as it is turned about the vertical.
+    across = np.linalg.norm(trunk[:, [0, 2]], axis=-1)
+    own = np.arctan2(np.linalg.norm(at_rest[[0, 2]]), at_rest[1])
+    return np.asarray(np.abs(np.arctan2(across, trunk[:, 1]) - own), np.float64)
+
+
 def facing_error(poses: Pose, rig: Rig) -> float:
     """Return the mean angle between the body's front and +z, −π…π [rad].
 
