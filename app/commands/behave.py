@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
-from cubeling.app.commands.session.play import VoiceOption
+from cubeling.app.commands.session.play import OwnMotionsOption, VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
@@ -66,6 +66,7 @@ def behave(
     character: Annotated[
         str, typer.Option(help="Who performs: bundled, or a .glb, .gltf or .vrm file.")
     ] = "human",
+    own_motions_only: OwnMotionsOption = False,
     target: Annotated[
         list[str] | None,
         typer.Option(help="A place for target=NAME, as NAME=x,y,z in metres; may be repeated."),
@@ -106,14 +107,15 @@ def behave(
     from cubeling.app.behaving.opening import open_lines, read_document
     from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
     from cubeling.app.behaving.recording import record_behaviour
-    from cubeling.characters import Character
+    from cubeling.characters import Character, with_lent_motions
     from cubeling.characters.behaviour import GestureExpressivity
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.speech import blood_of
 
     how = GestureExpressivity(spatial, openness, fluidity, bias, tension, power)
     options = BehaviourOptions(how, emotion_of(emotion), seed, _targets(target or []))
-    body, pixels = with_root_joint(Character.load(character)), size_of(size)
+    loaded, pixels = Character.load(character), size_of(size)
+    body = with_root_joint(loaded if own_motions_only else with_lent_motions(loaded))
     if serve is not None:
         first = [read_document(file) for file in files or []]
         _serve(serve, body, options, first, voice, lang, rate, (pixels, view) if window else None)

@@ -12,7 +12,7 @@ from rich.markup import escape
 
 from cubeling.affect import Emotion
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
-from cubeling.app.commands.session.play import VoiceOption
+from cubeling.app.commands.session.play import OwnMotionsOption, VoiceOption
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.commands.speech_options import ProfileOption, SettingsOption, profile_of
 from cubeling.app.counted import quantity
@@ -49,6 +49,7 @@ def speak(
     character: Annotated[
         str, typer.Option(help="Who says it: bundled, or a .glb, .gltf or .vrm file.")
     ] = "human",
+    own_motions_only: OwnMotionsOption = False,
     voice: VoiceOption = None,
     lang: Annotated[
         str, typer.Option(help="Its language, as [cyan]espeak-ng --voices[/] lists them.")
@@ -81,7 +82,7 @@ def speak(
     from cubeling.app.sound.session_sound import at_sample_rate
     from cubeling.app.speaking.live import speak_live
     from cubeling.app.speaking.speech_video import Direction, speech_clip, write_video
-    from cubeling.characters import Character
+    from cubeling.characters import Character, with_lent_motions
     from cubeling.characters.model import gestures_for, save_bvh, with_root_joint
     from cubeling.characters.speech import TaggedText, blood_of, utterance_of
 
@@ -89,7 +90,8 @@ def speak(
     if save_profile is not None:
         check_output(save_profile, "profile", (".toml",), overwrite=overwrite)
         how.save(save_profile)
-    body = with_root_joint(Character.load(character))
+    loaded = Character.load(character)
+    body = with_root_joint(loaded if own_motions_only else with_lent_motions(loaded))
     if gestures is not None:
         body = replace(body, gestures=gestures_for(gestures, body.skeleton, character))
     feels, pixels = emotion_of(emotion), size_of(size)

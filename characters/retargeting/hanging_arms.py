@@ -5,14 +5,13 @@ shoulders the hands would be inside the other body: each arm is then held away f
 smallest angle at which its skin is outside, as far as the arm hangs.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.model.character import skin
-from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.retargeting.transfer import (
     in_common_axes,
@@ -49,9 +48,7 @@ class ArmClearance:
         """Measure the arms of a body with a skin in a pose in which they hang."""
         placements = standing.globals(rig.skeleton)
         angles = {
-            side: angle
-            for side in SIDES
-            if (angle := _clear_angle(rig, placements, side)) > 0.0
+            side: angle for side in SIDES if (angle := _clear_angle(rig, placements, side)) > 0.0
         }
         return ArmClearance(rig, angles)
 

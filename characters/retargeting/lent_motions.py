@@ -46,6 +46,8 @@ def with_lent_motions(character: Character) -> Character:
     if character.lender is None:
         return character
     body = with_root_joint(replace(character.with_stated_anatomy, clips={}))
+    # A file may rest in mid-stride: then its feet, arms and height would be those of a stride.
+    body = replace(body, skeleton=with_bind_pose(body))
     try:
         loan = MotionLoan(character.lender, body)
     except CharacterError:  # its legs or hips are not known: it stays in its rest pose
@@ -54,7 +56,7 @@ def with_lent_motions(character: Character) -> Character:
 
 
 class MotionLoan:
-    """Takes motions of a bundled character to another body.
+    """Takes motions of a bundled character to another body, which rests as it was modelled.
 
     Raises CharacterError if that has no hips or no legs, or is of another kind.
     """
@@ -63,8 +65,7 @@ class MotionLoan:
         self._body = body
         self._library = _gestures_of(lender)
         self._lender = lender
-        # The file may rest in mid-stride; bodies are compared as they were modelled.
-        self._target = Rig(with_bind_pose(body), body.anatomy, body.meshes)
+        self._target = Rig(body.skeleton, body.anatomy, body.meshes)
         self._source = Rig(self._library.skeleton, self._library.anatomy)
         self._mapping = map_joints(self._source, self._target)
 
@@ -112,9 +113,7 @@ class MotionLoan:
         """Return rotations (frames, n, 4) of the lender's library for joints of the body."""
         clip = Clip("gestures", self._library.rate, self._library.poses(turns), loop=False)
         found = transferred_rotations(clip, self._source, self._target, self._mapping)
-        turned = rotations.multiply(
-            rotations.conjugate(self._target.common_from_skeleton), found
-        )
+        turned = rotations.multiply(rotations.conjugate(self._target.common_from_skeleton), found)
         return local_rotations(turned, self._target.skeleton.parents)[:, list(joints)]
 
     def recording(self, recording: GestureRecording, joints: Sequence[int]) -> GestureRecording:

@@ -55,7 +55,6 @@ from cubeling.characters.retargeting.hanging_arms import share_inside
 from cubeling.characters.retargeting.locomotion.grading import MAX_SINKING_CM, MAX_SLIDE_CM_S
 from cubeling.characters.retargeting.measures import sole_dip, trunk_tilt
 from cubeling.characters.retargeting.rig import Rig
-from cubeling.characters.skeleton import rotations
 from tests.bench.retarget import PERSON_HEIGHT_M
 
 SCENES = (
@@ -101,9 +100,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         cast = list(_cast(given.folder, Path(folder)))
     takes = [perform(name, body) for name, body in track(cast, "Playing", transient=True)]
-    Console(width=120).print(_table(takes))
+    console = Console(width=120)
+    console.print(_table(takes))
     write_film(takes, given.output)
-    print(f"{given.output} is written")
+    console.print(f"{given.output} is written")
     sys.exit(any(_beyond(take) for take in takes))
 
 
@@ -172,7 +172,9 @@ def perform(name: str, character: Character) -> Take:
     finally:
         lines.close()
     clip = Clip(name, RATE_HZ, stack([placed_pose(each) for each in frames]), False, True)
-    return Take(name, body, clip, captions, {"lend": lend, "ready": ready, **_grades(body, clip, captions)})
+    return Take(
+        name, body, clip, captions, {"lend": lend, "ready": ready, **_grades(body, clip, captions)}
+    )
 
 
 def _block(name: str, behaviour: str) -> str:
@@ -255,7 +257,9 @@ def _table(takes: list[Take]) -> Table:
             else ""
             for column, form in forms.items()
         ]
-        table.add_row(take.name, "human" if take.body.anatomy.kind == "humanoid" else "vleo", *cells)
+        table.add_row(
+            take.name, "human" if take.body.anatomy.kind == "humanoid" else "vleo", *cells
+        )
     return table
 
 

@@ -90,6 +90,14 @@ IdleOption = Annotated[
     Path | None,
     typer.Option(help="Stand as a person does: a file of [cyan]cubeling idle learn[/]."),
 ]
+OwnMotionsOption = Annotated[
+    bool,
+    typer.Option(
+        "--own-motions-only",
+        help="A character without clips keeps its rest pose, instead of playing those of a bundled "
+        "one of its kind.",
+    ),
+]
 LanguageOption = Annotated[
     str | None,
     typer.Option(
@@ -200,6 +208,7 @@ def play(
     controller: ControllerOption = "tree",
     motions: MotionsOption = None,
     idle: IdleOption = None,
+    own_motions_only: OwnMotionsOption = False,
     intrinsics: IntrinsicsOption = None,
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
@@ -255,6 +264,7 @@ def play(
         controller=controller,
         motions=tuple(motions or ()),
         idle=idle,
+        own_motions_only=own_motions_only,
         intrinsics=intrinsics,
         speed_map=speed_map,
         turns=turns,
