@@ -136,8 +136,8 @@ class Animator:
 def _with_whole_morphs_at_most(pose: Pose, played: Array | None) -> Pose:
     """Return a pose with morph weights within 0…1, whatever the layers have added up to.
 
-    What a clip itself states beyond that was drawn so, and stays: `played` are the weights (morphs,)
-    of the controller's pose.
+    What a clip itself states beyond that was drawn so, and stays: `played` are the weights of the
+    controller's pose, (morphs,).
     """
     if pose.morphs is None:
         return pose
