@@ -9,6 +9,7 @@ from cubeling.characters.model.character import skin
 from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.retargeting.rig import LegJoints, Rig
 from cubeling.characters.retargeting.soles import parts_of_joints
+from cubeling.characters.retargeting.transfer import ankle_positions
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
 
@@ -48,6 +49,16 @@ def bone_change(poses: Pose, rig: Rig) -> float:
     ]
     at_rest = np.maximum(lengths[0], 1e-9)
     return float(np.abs(lengths[1] / at_rest - 1.0).max())
+
+
+def foot_gap(poses: Pose, rig: Rig) -> float:
+    """Return how far a foot is from the end of its shin at most, as a share of the leg."""
+    gaps = [0.0]
+    for leg in rig.legs:
+        placements = rig.placements(poses, [leg.lower, leg.foot])
+        apart = placements[:, leg.foot, :3, 3] - ankle_positions(placements, rig, leg)
+        gaps.append(float(np.linalg.norm(apart, axis=-1).max()) / rig.leg_length)
+    return max(gaps)
 
 
 def trunk_tilt(poses: Pose, rig: Rig) -> Array:

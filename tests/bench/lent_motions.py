@@ -15,6 +15,8 @@ hands
     no resting arm.
 inside
     Share of the skin of hanging forearms and hands that is inside the body.
+gap
+    Greatest distance of a foot from the end of its shin, in parts of the leg.
 tilt
     Greatest angle from hips to head against the vertical while it walks.
 
@@ -53,7 +55,7 @@ from cubeling.characters.retargeting import with_lent_motions
 from cubeling.characters.retargeting.footskate import find_foot_contacts
 from cubeling.characters.retargeting.hanging_arms import share_inside
 from cubeling.characters.retargeting.locomotion.grading import MAX_SINKING_CM, MAX_SLIDE_CM_S
-from cubeling.characters.retargeting.measures import sole_dip, trunk_tilt
+from cubeling.characters.retargeting.measures import foot_gap, sole_dip, trunk_tilt
 from cubeling.characters.retargeting.rig import Rig
 from tests.bench.retarget import PERSON_HEIGHT_M
 
@@ -72,7 +74,7 @@ SCENES = (
 RATE_HZ = 25.0
 TILE_PX = 240, 320
 COLUMNS = 5
-MAX_TILT_DEG, MIN_HANDS, MAX_INSIDE = 20.0, 0.5, 0.02
+MAX_TILT_DEG, MIN_HANDS, MAX_INSIDE, MAX_GAP = 20.0, 0.5, 0.02, 0.01
 LONGEST_S = 60.0
 
 
@@ -190,6 +192,7 @@ def _grades(body: Character, clip: Clip, captions: list[str]) -> dict[str, float
     grades = {
         "slide": size * _slide(rig, clip),
         "sinks": size * sole_dip(clip.poses, rig, body.meshes),
+        "gap": foot_gap(clip.poses, rig),
         "tilt": math.degrees(float(trunk_tilt(walk, rig).max())),
     }
     if body.anatomy.kind == "humanoid" and "leftUpperArm" in body.anatomy.joints:
@@ -229,6 +232,7 @@ def _beyond(take: Take) -> list[str]:
         "slide": (MAX_SLIDE_CM_S, 1),
         "sinks": (MAX_SINKING_CM, 1),
         "tilt": (MAX_TILT_DEG, 1),
+        "gap": (MAX_GAP, 1),
         "inside": (MAX_INSIDE, 1),
         "hands": (MIN_HANDS, -1),
     }
@@ -242,7 +246,7 @@ def _beyond(take: Take) -> list[str]:
 def _table(takes: list[Take]) -> Table:
     forms = {
         **{"lend": "{:.2f} s", "ready": "{:.2f} s", "slide": "{:.2f} cm/s", "sinks": "{:.1f} cm"},
-        **{"hands": "{:.2f}", "inside": "{:.1%}", "tilt": "{:.0f}°"},
+        **{"hands": "{:.2f}", "inside": "{:.1%}", "gap": "{:.1%}", "tilt": "{:.0f}°"},
     }
     table = Table(title="Persons without clips, at the size of a person")
     table.add_column("person")
