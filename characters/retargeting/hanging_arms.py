@@ -56,8 +56,8 @@ class ArmClearance:
         """Return poses (frames, …) whose arms are held away from the body as far as they hang."""
         for side, angle in self.angles.items():
             upper, hand = _arm(self.rig, side)
-            placed = self.rig.placements(poses, [hand])[:, [upper, hand], :3, 3]
-            arm = in_common_axes(self.rig, placed[:, 1] - placed[:, 0])
+            placed = self.rig.placements(poses, [hand])[..., :3, 3]
+            arm = in_common_axes(self.rig, placed[:, hand] - placed[:, upper])
             down = -arm[:, 1] / np.maximum(np.linalg.norm(arm, axis=-1), 1e-9)
             low, high = _HANGING
             share = smoothstep(np.clip((down - low) / (high - low), 0.0, 1.0))
