@@ -1,4 +1,4 @@
-"""Feet, hands, heads and eyes that are no children of their limbs, put below them.
+"""Plain skeletons for bodies without clips: limbs in one piece, and bones without scales.
 
 Rigs for inverse kinematics often have the feet below the armature, so that a foot stays where it is
 while its shin swings. A body without clips of its own does not need that.
@@ -18,6 +18,7 @@ _LIMBS = (
     *(("Foot", ("LowerLeg",)), ("FrontFoot", ("FrontLowerLeg",)), ("Hand", ("LowerArm",))),
     *(("Toes", ("Foot",)), ("FrontToes", ("FrontFoot",))),
 )
+_MAX_UNEVEN = 1e-3  # of scales along three axes
 _TRUNK = ("neck", "upperChest", "chest", "spine", "hips")
 
 
@@ -55,6 +56,38 @@ def with_attached_limbs(character: Character) -> Character:
                 inverse_bind=mesh.inverse_bind[order],
             )
             for mesh in character.meshes
+        ),
+    )
+
+
+def without_rest_scales(character: Character) -> Character:
+    """Return a character without clips whose joints have no scales: its bones are as long as seen.
+
+    Legs with scales cannot be bent to hold their feet. Scales that differ by axis, and those of a
+    body with springs, whose sizes they would change, stay.
+    """
+    skeleton = character.skeleton
+    if skeleton.rest.scales is None or character.springs:
+        return character
+    places = skeleton.rest.globals(skeleton)
+    sizes = np.linalg.norm(places[:, :3, :3], axis=1)
+    if np.ptp(sizes, axis=1).max() > _MAX_UNEVEN * sizes.max() or sizes.min() <= 0.0:
+        return character
+    size = sizes.mean(1)
+    above = np.array([1.0 if parent < 0 else size[parent] for parent in skeleton.parents])
+    rest = Pose(
+        skeleton.rest.translations * above[:, None],
+        skeleton.rest.rotations,
+        None,
+        skeleton.rest.morphs,
+    )
+    enlarge = np.tile(np.eye(4), (len(size), 1, 1))
+    enlarge[:, :3, :3] *= size[:, None, None]
+    return replace(
+        character,
+        skeleton=replace(skeleton, rest=rest),
+        meshes=tuple(
+            replace(mesh, inverse_bind=enlarge @ mesh.inverse_bind) for mesh in character.meshes
         ),
     )
 
