@@ -177,11 +177,12 @@ def _within_reach(
 
 
 def _rolling_feet(legs: LegIK) -> list[bool]:
-    """Return which feet have the joint of their toes far enough ahead to roll onto it."""
+    """Return which feet have the joint of their toes low and far enough ahead to roll onto it."""
     rest = legs.skeleton.rest.globals(legs.skeleton)[:, :3, 3]
     ankles, balls = rest[legs.joints[:, 3]], rest[legs.joints[:, 4]]
     ahead = np.linalg.norm((balls - ankles)[:, [0, 2]], axis=-1)
-    rolls: list[bool] = (ahead > _MIN_BALL_AHEAD * np.abs(ankles[:, 1])).tolist()
+    low = balls[:, 1] <= ankles[:, 1]
+    rolls: list[bool] = (low & (ahead > _MIN_BALL_AHEAD * np.abs(ankles[:, 1]))).tolist()
     return rolls
 
 
