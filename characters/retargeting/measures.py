@@ -11,6 +11,7 @@ from cubeling.characters.retargeting.rig import LegJoints, Rig
 from cubeling.characters.retargeting.soles import parts_of_joints
 from cubeling.characters.retargeting.transfer import ankle_positions
 from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES
 from cubeling.characters.skeleton.pose import Array, Pose
 
 _KNEE_QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -59,6 +60,25 @@ def foot_gap(poses: Pose, rig: Rig) -> float:
         apart = placements[:, leg.foot, :3, 3] - ankle_positions(placements, rig, leg)
         gaps.append(float(np.linalg.norm(apart, axis=-1).max()) / rig.leg_length)
     return max(gaps)
+
+
+def hands_below_shoulders(poses: Pose, rig: Rig) -> float | None:
+    """Return how much lower the higher hand is than its shoulder, in parts of the arm.
+
+    The mean of poses (frames, …); an arm without a hand ends at its elbow. None without arms.
+    """
+    joint, heights = rig.anatomy.joint, []
+    for side in SIDES:
+        upper, ends = joint(f"{side}UpperArm"), [f"{side}Hand", f"{side}LowerArm"]
+        end = next((found for part in ends if (found := joint(part)) is not None), None)
+        if upper is None or end is None:
+            continue
+        placed = rotations.rotate(
+            rig.common_from_skeleton, rig.placements(poses, [end])[..., :3, 3]
+        )
+        arm = placed[:, upper] - placed[:, end]
+        heights.append(float((arm[:, 1] / np.linalg.norm(arm, axis=-1)).mean()))
+    return min(heights, default=None)
 
 
 def trunk_tilt(poses: Pose, rig: Rig) -> Array:

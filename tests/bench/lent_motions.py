@@ -55,7 +55,12 @@ from cubeling.characters.retargeting import with_lent_motions
 from cubeling.characters.retargeting.footskate import find_foot_contacts
 from cubeling.characters.retargeting.hanging_arms import share_inside
 from cubeling.characters.retargeting.locomotion.grading import MAX_SINKING_CM, MAX_SLIDE_CM_S
-from cubeling.characters.retargeting.measures import foot_gap, sole_dip, trunk_tilt
+from cubeling.characters.retargeting.measures import (
+    foot_gap,
+    hands_below_shoulders,
+    sole_dip,
+    trunk_tilt,
+)
 from cubeling.characters.retargeting.rig import Rig
 from tests.bench.retarget import PERSON_HEIGHT_M
 
@@ -196,8 +201,10 @@ def _grades(body: Character, clip: Clip, captions: list[str]) -> dict[str, float
         "gap": foot_gap(clip.poses, rig),
         "tilt": math.degrees(float(trunk_tilt(walk, rig).max())),
     }
-    if body.anatomy.kind == "humanoid" and "leftUpperArm" in body.anatomy.joints:
-        grades |= {"hands": _hands_below(rig, rest), "inside": share_inside(rig, rest[-1])}
+    hands = hands_below_shoulders(rest, rig)
+    if body.anatomy.kind == "humanoid" and hands is not None:
+        last = rest[len(rest.rotations) - 1]
+        grades |= {"hands": hands, "inside": share_inside(rig, last)}
     return grades
 
 
@@ -213,18 +220,6 @@ def _slide(rig: Rig, clip: Clip) -> float:
     steps = np.linalg.norm(np.diff(places, axis=0), axis=-1) * clip.rate
     standing = contacts[1:] & contacts[:-1]
     return float(steps[standing].mean()) if standing.any() else 0.0
-
-
-def _hands_below(rig: Rig, rest: Clip | object) -> float:
-    """Return how much lower hands are than shoulders, in parts of the arm; of the higher one."""
-    joints = rig.anatomy.joints
-    places = rig.placements(rest, list(joints.values()))[..., :3, 3]
-    lower = []
-    for side in ("left", "right"):
-        end = next(joints[n] for p in ("Hand", "LowerArm") if (n := side + p) in joints)
-        arm = places[:, joints[f"{side}UpperArm"]] - places[:, end]
-        lower.append(float((arm[:, 1] / np.linalg.norm(arm, axis=-1)).mean()))
-    return min(lower)
 
 
 def _beyond(take: Take) -> list[str]:
