@@ -1,4 +1,4 @@
-"""Plain skeletons for bodies without clips: limbs in one piece, and bones without scales.
+"""Plain skeletons for bodies without clips: whole limbs, with toes, and bones without scales.
 
 Rigs for inverse kinematics often have the feet below the armature, so that a foot stays where it is
 while its shin swings. A body without clips of its own does not need that.
@@ -9,7 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import Character
+from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
@@ -88,6 +90,48 @@ def without_rest_scales(character: Character) -> Character:
         skeleton=replace(skeleton, rest=rest),
         meshes=tuple(
             replace(mesh, inverse_bind=enlarge @ mesh.inverse_bind) for mesh in character.meshes
+        ),
+    )
+
+
+def with_toe_ends(character: Character) -> Character:
+    """Return a person without clips whose feet end in toes, so that legs can hold them in place.
+
+    A foot without such a joint gets one where its sole rolls, which moves no skin.
+    """
+    skeleton = character.skeleton
+    if character.anatomy.kind != "humanoid" or find_legs(skeleton) is not None:
+        return character
+    rig, rest = Rig(skeleton, character.anatomy, character.meshes), skeleton.rest
+    places, back = rest.globals(skeleton), rotations.conjugate(rig.common_from_skeleton)
+    feet = {
+        f"{rig.anatomy.parts[leg.foot].removesuffix('Foot')}Toes": leg
+        for leg in rig.legs
+        if leg.toes is None
+    }
+    if not feet or rest.scales is not None or feet.keys() & {*skeleton.names}:
+        return character
+    offsets = [
+        places[leg.foot, :3, :3].T @ rotations.rotate(back, rig.sole(leg).ball)
+        for leg in feet.values()
+    ]
+    count = len(feet)
+    unbound, unturned = np.tile(np.eye(4), (count, 1, 1)), np.tile(rotations.IDENTITY, (count, 1))
+    return replace(
+        character,
+        skeleton=Skeleton(
+            (*skeleton.names, *feet),
+            (*skeleton.parents, *(leg.foot for leg in feet.values())),
+            Pose(
+                np.concatenate([rest.translations, offsets]),
+                np.concatenate([rest.rotations, unturned]),
+                None,
+                rest.morphs,
+            ),
+        ),
+        meshes=tuple(
+            replace(mesh, inverse_bind=np.concatenate([mesh.inverse_bind, unbound]))
+            for mesh in character.meshes
         ),
     )
 

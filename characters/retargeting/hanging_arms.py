@@ -38,7 +38,7 @@ class ArmClearance:
     """By how much hanging arms are held away from a body."""
 
     rig: Rig
-    """The body."""
+    """Skeleton, anatomy and skin of the body."""
 
     angles: Mapping[str, float]
     """How far each arm is turned away, by its side [rad]; those that hang outside are left out."""

@@ -18,6 +18,7 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.retargeting.attached_limbs import (
     with_attached_limbs,
+    with_toe_ends,
     without_rest_scales,
 )
 from cubeling.characters.retargeting.hanging_arms import ArmClearance
@@ -52,7 +53,7 @@ def with_lent_motions(character: Character) -> Character:
     body = with_root_joint(replace(character.with_stated_anatomy, clips={}))
     # A file may rest in mid-stride: then its feet, arms and height would be those of a stride.
     body = with_attached_limbs(replace(body, skeleton=with_bind_pose(body)))
-    body = without_rest_scales(body)
+    body = with_toe_ends(without_rest_scales(body))
     try:
         loan = MotionLoan(character.lender, body)
     except CharacterError:  # its legs or hips are not known: it stays in its rest pose

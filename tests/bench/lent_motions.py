@@ -196,11 +196,12 @@ def _grades(body: Character, clip: Clip, captions: list[str]) -> dict[str, float
     walk = clip.poses[_frames(captions, "walks")]
     rest = clip.poses[_frames(captions, "stands again")[-5:]]
     grades = {
-        "slide": size * _slide(rig, clip),
         "sinks": size * sole_dip(clip.poses, rig, body.meshes),
         "gap": foot_gap(clip.poses, rig),
         "tilt": math.degrees(float(trunk_tilt(walk, rig).max())),
     }
+    if "Walk" in body.clips:
+        grades["slide"] = size * _slide(rig, clip)  # others hop, over which feet stand nowhere
     hands = hands_below_shoulders(rest, rig)
     if body.anatomy.kind == "humanoid" and hands is not None:
         last = rest[len(rest.rotations) - 1]

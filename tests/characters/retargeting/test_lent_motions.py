@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from cubeling.characters import Animator, Character, RootDelta, with_lent_motions
+from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import skin
-from cubeling.characters.retargeting.attached_limbs import with_attached_limbs
+from cubeling.characters.retargeting.attached_limbs import with_attached_limbs, with_toe_ends
 from cubeling.characters.retargeting.hanging_arms import ArmClearance, share_inside
 from cubeling.characters.retargeting.measures import foot_gap
 from cubeling.characters.retargeting.rig import Rig
@@ -162,3 +163,25 @@ def _with_foot_at_root(human):
         human.with_stated_anatomy, skeleton=Skeleton(skeleton.names, tuple(parents), rest)
     )
     return body
+
+
+def test_feet_without_toes_get_some_so_that_they_are_held_in_place(human):
+    toes = {human.anatomy.joints[f"{side}Toes"] for side in ("left", "right")}
+    names = tuple(
+        f"plate{joint}" if joint in toes else name
+        for joint, name in enumerate(human.skeleton.names)
+    )
+    stated = dict.fromkeys(("leftToes", "rightToes"), "")
+    joints = {
+        part: names[joint] for part, joint in human.anatomy.joints.items() if part not in stated
+    }
+    flat = replace(
+        human, skeleton=replace(human.skeleton, names=names), semantics={**joints, **stated}
+    )
+    feet = with_toe_ends(flat)
+    assert find_legs(flat.skeleton) is None
+    assert find_legs(feet.skeleton) is not None
+    assert "leftToes" in feet.skeleton.names
+    own = [skin(mesh, flat.skeleton.rest.globals(flat.skeleton)) for mesh in flat.meshes]
+    new = [skin(mesh, feet.skeleton.rest.globals(feet.skeleton)) for mesh in feet.meshes]
+    np.testing.assert_array_equal(np.concatenate(new), np.concatenate(own))
