@@ -152,8 +152,9 @@ def _placed_skin(rig: Rig, placements: Array) -> tuple[Array, NDArray[np.intp]]:
     for mesh in rig.meshes:
         points.append(in_common_axes(rig, skin(mesh, placements)))
         strongest = np.argmax(mesh.weights, axis=1)
-        movers.append(np.take_along_axis(mesh.joints, strongest[:, None], axis=1)[:, 0])
-    return np.concatenate(points), np.concatenate(movers).astype(np.intp)
+        mover = np.take_along_axis(mesh.joints, strongest[:, None], axis=1)[:, 0]
+        movers.append(mover.astype(np.intp))
+    return np.concatenate(points), np.concatenate(movers)
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ from cubeling.app.behaving.opening import open_lines
 from cubeling.app.behaving.player import BehaviourPlayer
 from cubeling.app.behaving.recording import placed_pose
 from cubeling.app.ui.video_file import VideoFile
-from cubeling.characters import Animator, Character, Clip
+from cubeling.characters import Animator, Character, Clip, PosedCharacter
 from cubeling.characters.model.character import CHARACTER_READERS
 from cubeling.characters.motion import stack
 from cubeling.characters.rendering import PortraitRenderer, create_context
@@ -165,7 +165,8 @@ def perform(name: str, character: Character) -> Take:
     Animator(body)
     ready = time.process_time() - start - lend
     lines = open_lines(None, "en")
-    frames, captions = [], []
+    frames: list[PosedCharacter] = []
+    captions: list[str] = []
     try:
         player = BehaviourPlayer(body, lines)
         player.settle(2.0, RATE_HZ)

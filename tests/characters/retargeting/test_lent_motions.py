@@ -11,6 +11,7 @@ from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import skin
 from cubeling.characters.retargeting.attached_limbs import with_attached_limbs, with_toe_ends
 from cubeling.characters.retargeting.hanging_arms import ArmClearance, share_inside
+from cubeling.characters.retargeting.lent_motions import LentClips
 from cubeling.characters.retargeting.measures import foot_gap
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
@@ -54,16 +55,18 @@ def test_a_person_without_clips_stands_with_hanging_arms_from_the_first_frame_an
 
 
 def test_clips_are_retargeted_when_they_are_asked_for_and_once(human):
-    lent = with_lent_motions(human)
-    assert "Walk" in lent.clips
-    assert lent.clips._made == {}
-    assert lent.clips["nod"] is lent.clips["nod"]
-    assert [*lent.clips._made] == ["nod"]
+    clips = with_lent_motions(human).clips
+    assert isinstance(clips, LentClips)
+    assert "Walk" in clips
+    assert clips._made == {}
+    assert clips["nod"] is clips["nod"]
+    assert [*clips._made] == ["nod"]
 
 
 def test_its_hands_beat_what_it_says_as_the_lender_s_do(human, person):
     own = Character.load("human").gestures
     assert person.gestures is not None
+    assert own is not None
     lent, theirs = person.gestures.recordings[0].turns, own.recordings[0].turns
     assert person.gestures.phrases == own.phrases
     apart = rotations.multiply(rotations.conjugate(lent), theirs)
