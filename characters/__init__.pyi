@@ -83,5 +83,6 @@ from cubeling.characters.motion.schedule import (
     Schedule as Schedule,
 )
 from cubeling.characters.motion.state_machine import StateMachine as StateMachine
+from cubeling.characters.retargeting.lent_motions import with_lent_motions as with_lent_motions
 from cubeling.characters.skeleton.masks import Mask as Mask, mask_of as mask_of
 from cubeling.characters.skeleton.pose import Pose as Pose, Skeleton as Skeleton

@@ -10,6 +10,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from cubeling.app.commands.character_options import OwnMotionsOption
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.commands.speech_options import SPEECH_GROUP, VoiceOption
@@ -71,6 +72,7 @@ def behave(
     character: Annotated[
         str, typer.Option(help="Who performs: bundled, or a .glb, .gltf or .vrm file.")
     ] = "human",
+    own_motions_only: OwnMotionsOption = False,
     target: Annotated[
         list[str] | None,
         typer.Option(help="A place for target=NAME, as NAME=x,y,z in metres; may be repeated."),
@@ -127,14 +129,15 @@ def behave(
     from cubeling.app.behaving.opening import open_lines, read_document
     from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
     from cubeling.app.behaving.recording import record_behaviour
-    from cubeling.characters import Character
+    from cubeling.characters import Character, with_lent_motions
     from cubeling.characters.behaviour import GestureExpressivity
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.speech import blood_of
 
     how = GestureExpressivity(spatial, openness, fluidity, bias, tension, power)
     options = BehaviourOptions(how, feels, seed, places)
-    body = with_root_joint(Character.load(character))
+    loaded = Character.load(character)
+    body = with_root_joint(loaded if own_motions_only else with_lent_motions(loaded))
     if serve is not None:
         first = [read_document(file) for file in files or []]
         shown = (pixels, view) if window else None

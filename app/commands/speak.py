@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.affect import Emotion
+from cubeling.app.commands.character_options import OwnMotionsOption
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
 from cubeling.app.commands.session.preference_options import emotion_of, size_of
 from cubeling.app.commands.speech_options import (
@@ -57,6 +58,7 @@ def speak(
     character: Annotated[
         str, typer.Option(help="Who says it: bundled, or a .glb, .gltf or .vrm file.")
     ] = "human",
+    own_motions_only: OwnMotionsOption = False,
     voice: VoiceOption = None,
     language: Annotated[
         str,
@@ -111,13 +113,14 @@ def speak(
     from cubeling.app.sound.session_sound import at_sample_rate
     from cubeling.app.speaking.live import speak_live
     from cubeling.app.speaking.speech_video import Direction, speech_clip, write_video
-    from cubeling.characters import Character
+    from cubeling.characters import Character, with_lent_motions
     from cubeling.characters.model import gestures_for, save_bvh, with_root_joint
     from cubeling.characters.speech import TaggedText, blood_of, utterance_of
 
     if save_profile is not None:
         how.save(save_profile)
-    body = with_root_joint(Character.load(character))
+    loaded = Character.load(character)
+    body = with_root_joint(loaded if own_motions_only else with_lent_motions(loaded))
     if gestures is not None:
         body = replace(body, gestures=gestures_for(gestures, body.skeleton, character))
     if live:

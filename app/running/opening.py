@@ -23,7 +23,12 @@ from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import NullScreen, Screen
-from cubeling.characters import Character, choose_controller, prepare_gestures
+from cubeling.characters import (
+    Character,
+    choose_controller,
+    prepare_gestures,
+    with_lent_motions,
+)
 from cubeling.tracking import (
     CubeModel,
     FrameSource,
@@ -91,6 +96,8 @@ def open_session(
     cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
     scenario = scenario_of(options, options.scenario, cube)
     character = Character.load(options.character or scenario.character)
+    if not options.own_motions_only:
+        character = with_lent_motions(character)
     if options.idle is not None:
         if options.controller != "tree":
             raise AppError(

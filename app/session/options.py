@@ -39,6 +39,9 @@ class SessionOptions:
     idle: Path | None = None
     """The .idle file of the person as whom the character stands; None for its own idle clip."""
 
+    own_motions_only: bool = False
+    """Whether a character without clips stays in its rest pose, and plays nobody else's."""
+
     language: str | None = None
     """Code of the language in which the character speaks, or "none" for silence; None for that of
     a recording, or English in a window."""
@@ -168,6 +171,7 @@ class SessionOptions:
             "controller": self.controller,
             "motions": "\n".join(self.motions),
             "idle": "" if self.idle is None else str(self.idle),
+            "own_motions_only": "yes" if self.own_motions_only else "no",
             "speed_map": self.speed_map,
             "turns": f"{self.turns:g}",
             "personality": self.personality or "",
@@ -189,6 +193,8 @@ class SessionOptions:
             controller=metadata.get("controller", "tree"),
             motions=tuple(metadata.get("motions", "").splitlines()),
             idle=Path(metadata["idle"]) if metadata.get("idle") else None,
+            # What was recorded before there were lent motions had none.
+            own_motions_only=metadata.get("own_motions_only", "yes") == "yes",
             speed_map=metadata.get("speed_map", "corrected"),
             turns=float(metadata.get("turns", "2")),
             personality=metadata.get("personality") or None,

@@ -86,9 +86,14 @@ class FootOffset:
 
 
 class FootConstraint:
-    """State of one foot: held, or moving; advanced once a frame."""
+    """State of one foot: held, or moving; advanced once a frame.
 
-    def __init__(self, body_height: float) -> None:
+    A foot that `rolls` has its toes where it rolls onto the ball, so one of its points is on the
+    ground while it is held. Others may stand on what is in front of the toes, and are only raised.
+    """
+
+    def __init__(self, body_height: float, rolls: bool = True) -> None:
+        self._rolls = rolls
         self.held = False
         self.offset = FootOffset()
         """The present offset."""
@@ -156,7 +161,7 @@ class FootConstraint:
         if not self.held:
             self.held = True
             self.offset.y = self._raised
-            landing = [0.0, 0.0, 0.0, self.offset.y + points.height]
+            landing = [0.0, 0.0, 0.0, self.offset.y - self._to_ground(points)]
             # Height only: x, z and heading are held exactly from the first frame on, so nothing
             # slides.
             self._start_decay(landing, [0.0] * 4, _OFFSET_DECAY_S)
@@ -250,7 +255,11 @@ class FootConstraint:
             dx, dz = points.ball[0] - points.heel[0], points.ball[2] - points.heel[2]
             ahead = rotate_yaw(dx, dz, yaw)
             x, z = x + ahead[0], z + ahead[1]
-        return [x - points.ball[0], z - points.ball[2], yaw, -points.height]
+        return [x - points.ball[0], z - points.ball[2], yaw, self._to_ground(points)]
+
+    def _to_ground(self, points: FootPoints) -> float:
+        """Return how far a held foot is raised from its motion [m]; negative if it is lowered."""
+        return -points.height if self._rolls else max(-points.height, 0.0)
 
 
 def rotate_yaw(x: float, z: float, yaw: float) -> tuple[float, float]:

@@ -18,6 +18,7 @@ _MIN_CHANGE = 1e-5  # [body heights]: smaller offsets are not applied
 # Of a leg's length: beyond these it stretches ever more slowly, with its foot held or moving.
 _SOFT_EXTENSION_HELD, _SOFT_EXTENSION_MOVING = 0.98, 0.94
 _SOFTENING_S = 0.05  # over which the first goes over into the second after the foot is let go
+_MIN_BALL_AHEAD = 0.5  # of the height of the ankle: nearer toes are the middle of the foot
 _YAW_RADIUS = 0.06  # [body heights]: converts a foot's rotation to a length
 
 
@@ -26,9 +27,9 @@ class FootLock:
 
     def __init__(self, legs: LegIK, body_height: float) -> None:
         self.legs = legs
-        self.feet = tuple(FootConstraint(body_height) for _ in range(legs.count))
         self._body_height = body_height
         self._points, self._rest_heights = _rest_foot_points(legs)
+        self.feet = tuple(FootConstraint(body_height, rolls) for rolls in _rolling_feet(legs))
         self._hip, self._ankle, self._toes = legs.joints[:, [1, 3, 4]].T.tolist()
         offsets = legs.skeleton.rest.translations[legs.joints[:, 2:4]]
         lengths = np.sqrt(np.einsum("lji,lji->lj", offsets, offsets))
@@ -173,6 +174,16 @@ def _within_reach(
     share = (start + room * (1.0 - math.exp((start - away) / room))) / away
     x, y, z = (h + share * (w - h) for h, w in zip(hip, wanted, strict=True))
     return x, y, z
+
+
+def _rolling_feet(legs: LegIK) -> list[bool]:
+    """Return which feet have the joint of their toes low and far enough ahead to roll onto it."""
+    rest = legs.skeleton.rest.globals(legs.skeleton)[:, :3, 3]
+    ankles, balls = rest[legs.joints[:, 3]], rest[legs.joints[:, 4]]
+    ahead = np.linalg.norm((balls - ankles)[:, [0, 2]], axis=-1)
+    low = balls[:, 1] <= ankles[:, 1]
+    rolls: list[bool] = (low & (ahead > _MIN_BALL_AHEAD * np.abs(ankles[:, 1]))).tolist()
+    return rolls
 
 
 def _rest_foot_points(legs: LegIK) -> tuple[list[list[Vector]], list[list[float]]]:

@@ -44,6 +44,9 @@ CHARACTER_WRITERS: "Registry[Callable[[Character, Path], None]]" = Registry(
 )
 """Writers of a character by the suffix of the file."""
 
+LENDERS: Mapping[str, str] = {"humanoid": "human", "quadruped": "vleo"}
+"""Bundled characters that lend their motions to those without, by the kind of body."""
+
 
 @dataclass(frozen=True)
 class Character:
@@ -55,7 +58,7 @@ class Character:
     skeleton: Skeleton
     """Joints and rest pose."""
 
-    clips: dict[str, Clip]
+    clips: Mapping[str, Clip]
     """Clips by name, in the order of the file."""
 
     meshes: tuple[Mesh, ...]
@@ -183,6 +186,15 @@ class Character:
         """The same character, whose body parts stay what they are if its skeleton changes."""
         names = {part: self.skeleton.names[joint] for part, joint in self.anatomy.joints.items()}
         return replace(self, semantics={**dict.fromkeys(BODY_PARTS, ""), **names})
+
+    @property
+    def lender(self) -> str | None:
+        """Bundled character of its kind whose motions it plays by default; None if it has its own.
+
+        A pose of one frame is no motion. See `characters.retargeting.with_lent_motions`.
+        """
+        moves = any(clip.duration > 0.0 for clip in self.clips.values())
+        return None if moves or self.standing is not None else LENDERS.get(self.anatomy.kind)
 
     @cached_property
     def upper_body(self) -> "UpperBody":

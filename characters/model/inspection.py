@@ -191,7 +191,12 @@ def _problems_of_joints(character: Character, feet: dict[str, tuple[int, ...]]) 
 
 
 def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iterator[str]:
-    if not clips:
+    if character.lender is not None:
+        yield (
+            f"It has no motions of its own: it plays those of the bundled {character.lender}, "
+            "retargeted; --own-motions-only leaves them out."
+        )
+    elif not clips:
         yield "It has no clips: it can be posed and retargeted to, but plays nothing by itself."
     static = [stats.clip.name for stats in clips if stats.clip.duration == 0.0]
     if static:

@@ -54,4 +54,8 @@ class LookAt:
         """
         inwards = yaw < 0 if side == "left" else yaw > 0
         across = self.inner if side and inwards else self.outer
-        return across.map_angle(yaw), (self.up if pitch > 0 else self.down).map_angle(pitch)
+        parts = across.map_angle(yaw), (self.up if pitch > 0 else self.down).map_angle(pitch)
+        if self.by == "bone":
+            return parts
+        # VRM 0 files state ranges beyond a whole morph, which move the eyes down the face.
+        return min(max(parts[0], -1.0), 1.0), min(max(parts[1], -1.0), 1.0)

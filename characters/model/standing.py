@@ -22,7 +22,7 @@ StandingFactory = Callable[[int], StandingMotion]
 
 def idle_clips(clips: Mapping[str, Clip]) -> list[Clip]:
     """Return the clips of idling: those whose name contains "idle"."""
-    return [clip for name, clip in clips.items() if "idle" in name.lower()]
+    return [clips[name] for name in clips if "idle" in name.lower()]
 
 
 def standing_factory(

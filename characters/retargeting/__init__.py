@@ -4,6 +4,7 @@
 character needs to walk and run where it is sent.
 """
 
+from cubeling.characters.retargeting.lent_motions import with_lent_motions
 from cubeling.characters.retargeting.locomotion.grading import YAW_RATE_PER_ANGULAR, GaitReport
 from cubeling.characters.retargeting.locomotion.locomotion_clips import (
     LocomotionResult,
@@ -20,4 +21,5 @@ __all__ = [
     "load_recording",
     "make_locomotion",
     "retarget",
+    "with_lent_motions",
 ]

@@ -9,7 +9,9 @@ from cubeling.characters.model.character import skin
 from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.retargeting.rig import LegJoints, Rig
 from cubeling.characters.retargeting.soles import parts_of_joints
+from cubeling.characters.retargeting.transfer import ankle_positions
 from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import SIDES
 from cubeling.characters.skeleton.pose import Array, Pose
 
 _KNEE_QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -48,6 +50,53 @@ def bone_change(poses: Pose, rig: Rig) -> float:
     ]
     at_rest = np.maximum(lengths[0], 1e-9)
     return float(np.abs(lengths[1] / at_rest - 1.0).max())
+
+
+def foot_gap(poses: Pose, rig: Rig) -> float:
+    """Return how far a foot is from the end of its shin at most, as a share of the leg."""
+    gaps = [0.0]
+    for leg in rig.legs:
+        placements = rig.placements(poses, [leg.lower, leg.foot])
+        apart = placements[:, leg.foot, :3, 3] - ankle_positions(placements, rig, leg)
+        gaps.append(float(np.linalg.norm(apart, axis=-1).max()) / rig.leg_length)
+    return max(gaps)
+
+
+def hands_below_shoulders(poses: Pose, rig: Rig) -> float | None:
+    """Return how much lower the higher hand is than its shoulder, in parts of the arm.
+
+    The mean of poses (frames, …); an arm without a hand ends at its elbow. None without arms.
+    """
+    joint, heights = rig.anatomy.joint, []
+    for side in SIDES:
+        upper, ends = joint(f"{side}UpperArm"), [f"{side}Hand", f"{side}LowerArm"]
+        end = next((found for part in ends if (found := joint(part)) is not None), None)
+        if upper is None or end is None:
+            continue
+        placed = rotations.rotate(
+            rig.common_from_skeleton, rig.placements(poses, [end])[..., :3, 3]
+        )
+        arm = placed[:, upper] - placed[:, end]
+        heights.append(float((arm[:, 1] / np.linalg.norm(arm, axis=-1)).mean()))
+    return min(heights, default=None)
+
+
+def trunk_tilt(poses: Pose, rig: Rig) -> Array:
+    """Return the angle from hips to head against that at rest, (frames,) [rad]; 0 without them."""
+    joints = [rig.anatomy.joint(part) for part in ("hips", "head")]
+    if None in joints:
+        return np.zeros(len(poses.rotations))
+    hips, head = (
+        rotations.rotate(rig.common_from_skeleton, pose.globals(rig.skeleton)[:, joint, :3, 3])
+        for joint in joints
+        for pose in [poses]
+    )
+    trunk = head - hips
+    at_rest = rig.rest_positions[joints[1]] - rig.rest_positions[joints[0]]
+    # A body may lean at rest; to either side is as far as it is turned about the vertical.
+    across = np.linalg.norm(trunk[:, [0, 2]], axis=-1)
+    own = np.arctan2(np.linalg.norm(at_rest[[0, 2]]), at_rest[1])
+    return np.asarray(np.abs(np.arctan2(across, trunk[:, 1]) - own), np.float64)
 
 
 def facing_error(poses: Pose, rig: Rig) -> float:

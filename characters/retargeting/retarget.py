@@ -69,12 +69,13 @@ def retarget(
     """
     try:
         rigs = Rig(source, source_anatomy), Rig(target, target_anatomy, meshes)
-        return _retarget(clip, *rigs, hold_feet)
+        return retarget_between(clip, *rigs, hold_feet=hold_feet)
     except CharacterError as error:
         raise CharacterError(f"clip {clip.name!r}: {error}") from None
 
 
-def _retarget(clip: Clip, source: Rig, target: Rig, hold_feet: bool) -> Clip:
+def retarget_between(clip: Clip, source: Rig, target: Rig, *, hold_feet: bool = True) -> Clip:
+    """Return a clip of one rig for another, as `retarget` does: rigs keep what they measured."""
     mapping = map_joints(source, target)
     ratio = target.leg_length / source.leg_length
     share = _stride_share(clip, source, target)

@@ -17,6 +17,7 @@ from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.smoothing import gaussian_smooth
 
+_MAX_ROOT_YAW_RAD = 1e-3  # rounding in files
 _SMOOTHING_S = 0.3  # standard deviation; removes the sway of a stride
 
 
@@ -42,8 +43,13 @@ def root_trajectory(clip: Clip, source: Rig, ratio: float) -> Array:
 
 
 def has_root_joint(skeleton: Skeleton, anatomy: Anatomy) -> bool:
-    """Return whether joint 0 is a root on the ground, and not the hips under that name."""
-    return skeleton.has_root_motion and anatomy.joint("hips") != 0
+    """Return whether joint 0 is a root on the ground that looks ahead at rest.
+
+    The hips under that name are none. Nor is one that is turned, as in some VRM 0: a root's yaw is
+    the way that it goes.
+    """
+    ahead = abs(float(rotations.heading(skeleton.rest.rotations[0]))) < _MAX_ROOT_YAW_RAD
+    return skeleton.has_root_motion and ahead and anatomy.joint("hips") != 0
 
 
 def with_root_joint(character: Character) -> Character:

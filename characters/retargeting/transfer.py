@@ -144,7 +144,7 @@ def build_poses(rig: Rig, turns: Array, hips: Array, root: Array | None) -> Pose
     if root is not None:
         own[:, 0] = rotations.multiply(rotations.about("y", root[:, 2]), skeleton.rest.rotations[0])
         translations[:, 0] = ground_positions(root)
-    pose = Pose(translations, _local_rotations(own, skeleton.parents), scales)
+    pose = Pose(translations, local_rotations(own, skeleton.parents), scales)
     joint = rig.anatomy.joints["hips"]
     from_rest = rotations.multiply(turns[:, joint], rotations.conjugate(rig.rest_rotations[joint]))
     hips = hips + rotations.rotate(from_rest, rig.rest_positions[joint] - _middle_of_hips(rig))
@@ -202,7 +202,7 @@ def with_turns_from_rest(pose: Pose, rig: Rig, joints: Sequence[int], turns: Arr
     return turned
 
 
-def _local_rotations(turns: Array, parents: tuple[int, ...]) -> Array:
+def local_rotations(turns: Array, parents: tuple[int, ...]) -> Array:
     """Return rotations relative to the parents, (frames, joints, 4), from global ones."""
     above = np.array(parents)
     relative = turns.copy()

@@ -18,6 +18,13 @@ slide, sinks, knees
     and bend of the knees beyond the motion's.
 seam
     Distance of the joints where the cycle was closed.
+gap, tilt
+    Of the walk: greatest distance of a foot from the end of its shin, in parts of the leg, and
+    angle from hips to head against that at rest.
+hands
+    How much lower the hands of a person at rest are than the shoulders, in parts of the arm.
+morphs
+    Least and greatest weight of all morphs of who looks about and feels at rest.
 
 A refusal is shown with its reason, and anything unexpected as BROKE. Exits with 1 if something
 broke, or a row is beyond the bar. With `-o PICTURES`, each row gets a picture there.
@@ -32,7 +39,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -41,8 +48,16 @@ from rich.markup import escape
 from rich.progress import track
 from rich.table import Table
 
+from cubeling.affect import Emotion
 from cubeling.app.ui.contact_sheets import ContactSheets, save
-from cubeling.characters import Character, CharacterError
+from cubeling.characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    CharacterError,
+    RootDelta,
+    with_lent_motions,
+)
 from cubeling.characters.formats import is_motion_only
 from cubeling.characters.model.bind_pose import with_bind_pose
 from cubeling.characters.model.character import CHARACTER_READERS
@@ -63,7 +78,10 @@ from cubeling.characters.retargeting.locomotion.grading import (
 from cubeling.characters.retargeting.measures import (
     bone_change,
     facing_error,
+    foot_gap,
+    hands_below_shoulders,
     sole_dip,
+    trunk_tilt,
 )
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.retargeting.root import with_root_joint
@@ -72,8 +90,18 @@ from tests.bench.retarget import PERSON_HEIGHT_M, feet, knees_beyond, on_treadmi
 GAIT_NAME = re.compile(r"walk|run|jog|gallop|trot|stroll", re.IGNORECASE)
 """Clips of models that are taken as gaits."""
 
-COLUMNS = ("load", "time", "faces", "size", "steps", "slide", "sinks", "knees", "seam")
+COLUMNS = (
+    *("load", "time", "faces", "size", "steps", "slide", "sinks", "knees", "seam"),
+    *("gap", "tilt", "hands", "morphs"),
+)
 """Measures of a row, in the order of the table."""
+
+
+MAX_GAP, MAX_TILT_DEG, MIN_HANDS = 0.01, 20.0, 0.5
+"""Bars of `gap`, `tilt` and `hands`."""
+
+REST_FRAMES = 60
+"""Frames in which a model looks about at rest."""
 
 
 @dataclass
@@ -101,7 +129,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("-o", "--output", type=Path, help="folder for pictures")
     given = parser.parse_args()
-    console = Console(width=170)
+    console = Console(width=210)
     if not given.folder.is_dir():
         console.print(f"{given.folder} is no folder")
         sys.exit(2)
@@ -168,6 +196,8 @@ def _grade(row: Row, name: str, motion: str) -> None:
     row.cells["load"] = f"{time.perf_counter() - start:.1f} s"
     recording = load_recording(motion)
     loaded = Rig(character.skeleton, character.anatomy)
+    if name.endswith(tuple(CHARACTER_READERS)):
+        _grade_rest(row, name)
     start = time.perf_counter()
     try:
         made = make_locomotion(replace(character, clips={}), [recording])
@@ -189,9 +219,39 @@ def _grade(row: Row, name: str, motion: str) -> None:
         slide=size * max(gait.slide for gait in gaits),
         sinks=size * max(gait.sinking for gait in gaits),
         knees=math.degrees(max(gait.knee_excess for gait in gaits)),
+        gap=foot_gap(walk.poses, rig),
+        tilt=math.degrees(float(trunk_tilt(walk.in_place, rig).max())),
         seam=size * made.recordings[0].seam,
     )
     row.cells["steps"] = _landings(walk, rig)
+
+
+def _grade_rest(row: Row, name: str) -> None:
+    """Grade the arms and morphs of a model that stands, looks about and feels."""
+    hands, low, high = _rest_of(name)
+    if hands is not None:
+        row.cells["hands"] = f"{hands:.2f}"
+        row.over |= {"hands"} if hands < MIN_HANDS else set()
+    row.cells["morphs"] = f"{low:.1f}…{high:.1f}"
+    row.over |= {"morphs"} if low < 0.0 or high > 1.0 else set()
+
+
+@lru_cache(maxsize=1)
+def _rest_of(name: str) -> tuple[float | None, float, float]:
+    """Return how low the hands of a model at rest are, and its least and greatest morph weight."""
+    character = Character.load(name)
+    body = with_lent_motions(replace(character, clips={}))
+    animator = Animator(body, place=RootDelta())
+    poses = []
+    for number in range(REST_FRAMES):
+        aside = np.array([0.3 * math.sin(number / 5), 0.05, 0.3])
+        feeling = Emotion(math.cos(number / 9), math.sin(number / 7))
+        asked = CharacterCommand(number / 30, gaze=aside, emotion=feeling)
+        poses.append(animator.update(asked).pose)
+    weights = np.array([pose.morphs for pose in poses if pose.morphs is not None])
+    rig = Rig(body.skeleton, body.anatomy)
+    hands = hands_below_shoulders(poses[0][None], rig) if rig.anatomy.kind == "humanoid" else None
+    return hands, float(weights.min(initial=0.0)), float(weights.max(initial=0.0))
 
 
 def _turn(loaded: Rig, report: GaitReport, is_model: bool) -> float:
@@ -239,6 +299,8 @@ def _fill(row: Row, **figures: float) -> None:
         "sinks": (MAX_SINKING_CM, "{:.1f} cm"),
         "knees": (MAX_KNEE_EXCESS_DEG, "{:.1f}°"),
         "seam": (MAX_SEAM_CM, "{:.1f} cm"),
+        "gap": (MAX_GAP, "{:.1%}"),
+        "tilt": (MAX_TILT_DEG, "{:.0f}°"),
     }
     for column, figure in figures.items():
         bar, form = bars[column]

@@ -13,6 +13,7 @@ from cubeling.app.commands.access import (
     check_publisher,
     publisher,
 )
+from cubeling.app.commands.character_options import OwnMotionsOption
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.commands.session.play_options import (
     ALL_REALISM,
@@ -72,6 +73,7 @@ def play(
     controller: ControllerOption = "tree",
     motions: MotionsOption = None,
     idle: IdleOption = None,
+    own_motions_only: OwnMotionsOption = False,
     intrinsics: IntrinsicsOption = None,
     patience: PatienceOption = 30.0,
     robot: RobotOption = "sim",
@@ -141,6 +143,7 @@ def play(
         controller=controller,
         motions=tuple(motions or ()),
         idle=idle,
+        own_motions_only=own_motions_only,
         intrinsics=intrinsics,
         patience_s=patience,
         speed_map=speed_map,

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from cubeling.app.commands.character_options import CHARACTER_GROUP
 from cubeling.app.commands.speech_options import SPEECH_GROUP
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import INSIDE_CHOICES, NO_REALISM, REALISM_CHOICES
@@ -18,7 +19,6 @@ from cubeling.characters.rendering import QUALITIES
 
 DEFAULT_CAMERA = "camera:0"
 
-CHARACTER_GROUP = "The character"
 PICTURE_GROUP = "The picture"
 FILES_GROUP = "Files"
 """Headings of the options that matter less, in the help."""
@@ -46,7 +46,8 @@ SourceOption = Annotated[
         "--source",
         "-s",
         help='Where the pictures come from: camera:0 (with options: "camera:0?exposure=8"), '
-        "a video, a session (.mcap), http://PHONE:8080/video, rtsp://CAMERA/live, or synthetic:companion.",
+        "a video, a session (.mcap), http://PHONE:8080/video, rtsp://CAMERA/live, or "
+        "synthetic:companion.",
     ),
 ]
 CubeOption = Annotated[str | None, typer.Option(help="A bundled cube, or your own .toml file.")]

@@ -17,6 +17,7 @@ from cubeling.app.commands.access import (
     check_publisher,
     publisher,
 )
+from cubeling.app.commands.character_options import OwnMotionsOption
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
@@ -66,6 +67,7 @@ def replay(
     ] = None,
     motions: MotionsOption = None,
     idle: IdleOption = None,
+    own_motions_only: OwnMotionsOption = False,
     personality: PersonalityOption = None,
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
@@ -178,6 +180,7 @@ def replay(
             controller=controller or recorded.controller,
             motions=tuple(motions) if motions else () if controller else recorded.motions,
             idle=idle or recorded.idle,
+            own_motions_only=own_motions_only or (character is None and recorded.own_motions_only),
             personality=personality or recorded.personality,
             robot=robot,
             robot_settings=robot_settings,

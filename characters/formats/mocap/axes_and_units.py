@@ -14,6 +14,7 @@ import numpy as np
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.motion.clip import Clip
+from cubeling.characters.skeleton.masks import subtree
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 ADULT_HEIGHT_M = 1.7
@@ -30,6 +31,7 @@ _CMU_HEIGHT_M = (1.2, 2.0)  # only the CMU database uses its unit, and its perfo
 _SCALE_RANGE_M = (1e-6, 1e6)  # between a micrometre and what keeps positions finite
 _SAMPLED_FRAMES = 32  # spread over the recording
 _MIN_AXIS_COSINE = 0.7  # of a direction along an axis: 45°
+_MIN_AXIS_PART = 0.3  # of a mean direction along an axis that may be up
 
 # The rotation that brings each axis up, by the shortest way: rows are what x, y, z become.
 _Y_UP_FROM = {
@@ -41,6 +43,7 @@ _Y_UP_FROM = {
     "-x": np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
 }
 _HEAD_NAME = re.compile(r"head|skull", re.IGNORECASE)
+_HIPS_NAME = re.compile(r"hips?$|pelvis|hip_?cent(er|re)", re.IGNORECASE)
 _NECK_NAME = re.compile(r"neck", re.IGNORECASE)
 _FOOT_NAME = re.compile(r"foot|ankle|toe|paw|hoof", re.IGNORECASE)
 
@@ -61,12 +64,14 @@ def metric_motion(
     poses = clip.poses
     frames = np.linspace(0, len(clip) - 1, _SAMPLED_FRAMES).round().astype(int)
     positions = poses[np.unique(frames)].globals(skeleton)[..., :3, 3]
+    body = _body_joints(skeleton)
     if options.up is not None:
         axis = _check_up(path, options.up)
     else:
-        axis, up_notes = _recognise_up(skeleton, positions)
+        axis, up_notes = _recognise_up(skeleton, positions, body)
         notes += up_notes
-    height = float(np.percentile(np.ptp(positions[..., "xyz".index(axis[1])], axis=-1), 90))
+    heights = positions[:, body, "xyz".index(axis[1])]
+    height = float(np.percentile(np.ptp(heights, axis=-1), 90))
     scale = options.scale
     if scale is None:
         scale, scale_notes = _recognise_unit(height, stated_unit)
@@ -98,30 +103,56 @@ def _check_up(path: Path, up: str) -> str:
     return axis
 
 
-def _recognise_up(skeleton: Skeleton, positions: Array) -> tuple[str, tuple[str, ...]]:
-    """Return the axis from feet to body in the frames, else in the rest pose, else +y."""
+def _body_joints(skeleton: Skeleton) -> list[int]:
+    """Return the hips and all joints below them; joints above them may stay at the origin.
+
+    Hips are found by their name, else as the last joint that carries both the feet and the head.
+    """
     names = skeleton.names
+    ends = [
+        joint
+        for joint, name in enumerate(names)
+        if _FOOT_NAME.search(name) or _HEAD_NAME.search(name)
+    ]
+    above = [set(skeleton.with_ancestors([end])) - set(ends) for end in ends]
+    shared = set.intersection(*above) if above else {0}
+    named = [joint for joint in sorted(shared) if _HIPS_NAME.search(names[joint])]
+    hips = named[0] if named else max(shared, default=0)
+    return subtree(skeleton, hips)
+
+
+def _recognise_up(
+    skeleton: Skeleton, positions: Array, body_joints: list[int]
+) -> tuple[str, tuple[str, ...]]:
+    """Return the axis from feet to body in the frames, else in the rest pose, else +y.
+
+    `body_joints` are the hips and what is below them.
+    """
+    names, hips = skeleton.names, body_joints[0]
     heads = [j for j, name in enumerate(names) if _HEAD_NAME.search(name)]
-    heads = heads or [j for j, name in enumerate(names) if _NECK_NAME.search(name)] or [0]
+    heads = heads or [j for j, name in enumerate(names) if _NECK_NAME.search(name)] or [hips]
     feet = [j for j, name in enumerate(names) if _FOOT_NAME.search(name)]
     if not feet:
         return "+y", ("no foot found by name: +y is taken as up; give up= if it is not",)
 
-    def upward(at: Array) -> str | None:
+    def upward(at: Array) -> Array:
         # The middle of hips and head, because the head of an animal is far in front of its feet.
-        body = (at[:, heads].mean(1) + at[:, 0]) / 2
-        return _common_axis(body - at[:, feet].mean(1))
+        return _mean_direction((at[:, heads].mean(1) + at[:, hips]) / 2 - at[:, feet].mean(1))
 
-    moving = upward(positions)
-    resting = upward(skeleton.rest.globals(skeleton)[None, :, :3, 3])
-    axis = moving or resting or "+y"
+    way = upward(positions)
+    moving = _clear_axis(way)
+    resting = _clear_axis(upward(skeleton.rest.globals(skeleton)[None, :, :3, 3]))
+    possible = {axis for axis in (moving, resting) if axis is not None}
+    if moving is None:
+        possible |= _axes_along(way)
+    # Somebody lies or crawls, or the rest pose has other axes: the floor decides.
+    body = positions[:, body_joints]
+    axis = min(sorted(possible), key=lambda axis: _floor_deviation(body, axis), default="+y")
     if moving is None:
         return axis, (f"no clear direction from feet to head: {axis} is taken as up; give up=",)
-    if resting not in (None, moving):
-        # Somebody lies or crawls, or the rest pose has other axes: the floor decides.
-        axis = min((moving, resting), key=lambda axis: _floor_deviation(positions, axis))
-        other = moving if axis == resting else resting
-        return axis, (f"{axis} is taken as up, but {other} is possible: give up= if it is",)
+    others = possible - {axis}
+    if others:
+        return axis, (f"{axis} is taken as up, but {others.pop()} is possible: give up= if it is",)
     return axis, () if axis == "+y" else (f"up was {axis}, from feet to head",)
 
 
@@ -131,14 +162,24 @@ def _floor_deviation(positions: Array, axis: str) -> float:
     return float(heights.min(axis=-1).std())
 
 
-def _common_axis(directions: Array) -> str | None:
-    """Return the axis of the mean direction, if it is clear; x is never up."""
-    lengths = np.linalg.norm(directions, axis=-1, keepdims=True)
-    mean = (directions / np.maximum(lengths, 1e-12)).mean(0)
-    axis = int(np.abs(mean).argmax())
-    if axis == 0 or abs(mean[axis]) < _MIN_AXIS_COSINE:
+def _mean_direction(ways: Array) -> Array:
+    """Return the mean (3,) of the directions of ways (n, 3); short if they differ."""
+    lengths = np.linalg.norm(ways, axis=-1, keepdims=True)
+    return np.asarray((ways / np.maximum(lengths, 1e-12)).mean(0), np.float64)
+
+
+def _clear_axis(direction: Array) -> str | None:
+    """Return the axis of a mean direction, if it is clear; x is never up."""
+    axis = int(np.abs(direction).argmax())
+    if axis == 0 or abs(direction[axis]) < _MIN_AXIS_COSINE:
         return None
-    return "-+"[int(mean[axis] > 0)] + "xyz"[axis]
+    return "-+"[int(direction[axis] > 0)] + "xyz"[axis]
+
+
+def _axes_along(direction: Array) -> set[str]:
+    """Return all axes that a mean direction has a part of."""
+    parts = zip("xyz", direction, strict=True)
+    return {"-+"[int(part > 0)] + name for name, part in parts if abs(part) > _MIN_AXIS_PART}
 
 
 def _recognise_unit(height: float, stated: float | None) -> tuple[float, tuple[str, ...]]:

@@ -15,6 +15,7 @@ from cubeling.characters.retargeting.measures import (
     knee_quantiles,
     sole_dip,
 )
+from cubeling.characters.retargeting.recording import Recording
 
 YAW_RATE_PER_ANGULAR = 1.5
 """Yaw rate of the movement trees [°/s], for each degree of their parameter Angular."""
@@ -35,6 +36,7 @@ MAX_BONE_CHANGE = 0.01
 _MIN_SPEED = 0.25  # [leg lengths/s]
 _MAX_CLOSED_SEAM = 0.3  # [leg lengths]
 _MAX_SLIDE = 0.2  # [leg lengths/s]; feet that hop, or that nothing holds
+_MAX_LYING_DEG = 60.0  # of the body to the vertical; dinosaurs lean by less
 _MAX_BACKWARD = math.radians(120.0)
 
 
@@ -171,6 +173,29 @@ def refuse_other_motion(gait: GaitCycle) -> None:
     else:
         return
     raise CharacterError(f"{gait.origin}: {reason}; give a clip that walks ahead")
+
+
+def refuse_lying(recording: Recording) -> None:
+    """Refuse a person whose body lies in most frames: its vertical axis is another one.
+
+    Raises
+    ------
+    CharacterError
+        With the angle between the body and the vertical.
+    """
+    joints = recording.anatomy.joints
+    ends = [joints[part] for part in ("leftFoot", "rightFoot") if part in joints]
+    if recording.anatomy.kind != "humanoid" or not ends or "head" not in joints:
+        return
+    at = recording.clip.poses.globals(recording.skeleton)[..., :3, 3]
+    body = (at[:, joints["head"]] + at[:, joints["hips"]]) / 2 - at[:, ends].mean(1)
+    across = np.linalg.norm(body[:, [0, 2]], axis=-1)
+    angle = math.degrees(float(np.median(np.arctan2(across, body[:, 1]))))
+    if angle > _MAX_LYING_DEG:
+        raise CharacterError(
+            f"{recording.origin}: its body lies, {angle:.0f}° away from upright; say which axis is "
+            "up with --up, or give a clip that walks"
+        )
 
 
 def _knee_excess(gait: GaitCycle) -> float:

@@ -21,7 +21,7 @@ from cubeling.characters.retargeting.locomotion.cycle import (
     resample_loop,
 )
 from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
-from cubeling.characters.retargeting.locomotion.grading import refuse_other_motion
+from cubeling.characters.retargeting.locomotion.grading import refuse_lying, refuse_other_motion
 from cubeling.characters.retargeting.locomotion.looking_ahead import looking_ahead
 from cubeling.characters.retargeting.measures import knee_quantiles
 from cubeling.characters.retargeting.recording import Recording
@@ -43,6 +43,7 @@ _MAX_REPEATED_SEAM = 0.1  # leg lengths; parts of a loop that differ more do not
 
 def extract_gait(recording: Recording, character: Character, walker: Character) -> GaitCycle:
     """Return the best cycle of a recording; `walker` is the character with a root joint."""
+    refuse_lying(recording)
     rig = Rig(walker.skeleton, walker.anatomy, walker.meshes)
     clip, contacts = on_character(recording, character, walker)
     clip = _without_treadmill(clip, rig, contacts)

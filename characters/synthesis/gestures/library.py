@@ -1,5 +1,6 @@
 """Libraries of beat gestures, and the .gestures file."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -109,7 +110,7 @@ class GestureLibrary:
     rest: Array
     """Local rotations of these joints in rest, (joints, 4)."""
 
-    recordings: tuple[GestureRecording, ...]
+    recordings: Sequence[GestureRecording]
     """The recordings that phrases refer to by index."""
 
     phrases: tuple[GesturePhrase, ...]

@@ -36,3 +36,15 @@ def test_an_unsuitable_controller_is_refused_before_the_camera_is_opened(
     )
     with pytest.raises(CharacterError, match=problem), open_session(options):
         pass
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_metadata_keep_whether_a_character_plays_its_own_motions_only(own):
+    options = SessionOptions(scenario="follow", source="camera:0", own_motions_only=own)
+    again = SessionOptions.from_metadata(options.metadata(), "session.mcap")
+    assert again.own_motions_only is own
+
+
+def test_a_session_from_before_there_were_lent_motions_is_replayed_without_them():
+    options = SessionOptions.from_metadata({"scenario": "follow"}, "session.mcap")
+    assert options.own_motions_only
