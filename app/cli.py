@@ -224,7 +224,7 @@ class WarningPrinter:
         line: str | None = None,
     ) -> None:
         """Print a warning; the signature is that of `warnings.showwarning`."""
-        text = one_line(str(message))
+        text = one_line(" ".join(str(message).split()))
         errors = sys.modules.get("cubeling.characters.errors")
         if errors is None or not issubclass(category, errors.CharacterWarning):
             text = f"{filename}:{lineno}: {category.__name__}: {text}"

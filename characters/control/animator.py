@@ -17,7 +17,7 @@ from cubeling.characters.control.layers import FrameContext, LayerFactory, apply
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.motion import RootDelta
-from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.smoothing import low_pass
 
 MAX_TIME_STEP_S = 0.25
@@ -122,7 +122,7 @@ class Animator:
         )
         pose, _ = apply_layers(self._layers, frame.pose, context)
         return PosedCharacter(
-            pose=_with_whole_morphs_at_most(pose, frame.pose.morphs),
+            pose=pose,
             table_from_character=context.table_from_character,
             visible=command.visible,
             state=frame.state,
@@ -131,18 +131,6 @@ class Animator:
             weight=frame.weight,
             timestamp=command.timestamp,
         )
-
-
-def _with_whole_morphs_at_most(pose: Pose, played: Array | None) -> Pose:
-    """Return a pose with morph weights within 0…1, whatever the layers have added up to.
-
-    What a clip itself states beyond that was drawn so, and stays: `played` are the weights of the
-    controller's pose, (morphs,).
-    """
-    if pose.morphs is None:
-        return pose
-    low, high = (0.0, 1.0) if played is None else (np.minimum(played, 0.0), np.maximum(played, 1.0))
-    return replace(pose, morphs=np.clip(pose.morphs, low, high))
 
 
 def _check(command: CharacterCommand) -> None:

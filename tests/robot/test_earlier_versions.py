@@ -5,6 +5,7 @@ handshake, emotions, a motion, a sound, a refused command, a stop, half a second
 host, and its end. Each line is a time [ms], a direction and bytes.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -59,7 +60,9 @@ def test_a_host_of_an_earlier_version_hears_what_it_always_heard(transcript):
         answer = robot.bytes_to_send()
         if answer:
             answered[ms] = answer
-    assert answered == sent["rx"]
+    assert {ms: without_catalogue(data) for ms, data in answered.items()} == {
+        ms: without_catalogue(data) for ms, data in sent["rx"].items()
+    }
 
 
 def test_a_robot_of_an_earlier_version_is_told_what_it_was_always_told(transcript):
@@ -80,6 +83,17 @@ def test_a_robot_of_an_earlier_version_is_told_what_it_was_always_told(transcrip
     telemetry = host.telemetry(END_MS / 1000)
     assert (telemetry.counts.sessions, telemetry.counts.refused) == (2, 1)
     assert (host.joint_mover, telemetry.measured_at, telemetry.log) == (None, None, ())
+
+
+def without_catalogue(data: bytes) -> list[bytes]:
+    """Return the frames without what WELCOME says of motions: the dinosaur has learnt one since."""
+    bodies = []
+    for body in FrameReader().feed(data):
+        session, message = unpack(body, "robot")
+        if isinstance(message, m.Welcome):
+            body = pack(replace(message, catalogue=0, motions=0), session, 2)
+        bodies.append(body)
+    return bodies
 
 
 def with_version(data: bytes, version: int) -> bytes:

@@ -153,10 +153,6 @@ class CubeModel:
         faces = tuple(face for row in rows for face in _faces(row, keys, capacity, marker, by_name))
         if not faces:
             raise table.wrong("face", "none of them has a marker_id")
-        for key in ("name", "marker_id"):
-            values = [getattr(face, key) for face in faces]
-            if twice := [value for value in values if values.count(value) > 1]:
-                raise table.wrong("face", f"two have the {key} {twice[0]!r}; each must differ")
         cube = cls(
             table.line("name", "") or name,
             table.text("dictionary"),
@@ -172,6 +168,10 @@ class CubeModel:
                 f"the marker ({marker * 1000:g} mm) does not fit its face "
                 f"({cube.paper * 1000:g} mm); leave a white border of at least one marker cell",
             )
+        for key in ("name", "marker_id"):
+            values = [getattr(face, key) for face in faces]
+            if twice := [value for value in values if values.count(value) > 1]:
+                raise table.wrong("face", f"two have the {key} {twice[0]!r}; each must differ")
         return cube
 
     @property

@@ -13,11 +13,10 @@ from cubeling.app.commands.access import (
     check_publisher,
     publisher,
 )
-from cubeling.app.commands.character_options import OwnMotionsOption
+from cubeling.app.commands.character_options import CHARACTER_GROUP, OwnMotionsOption
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.commands.session.play_options import (
     ALL_REALISM,
-    CHARACTER_GROUP,
     DEFAULT_CAMERA,
     INSIDE_HELP,
     PICTURE_GROUP,

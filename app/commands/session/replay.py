@@ -17,13 +17,12 @@ from cubeling.app.commands.access import (
     check_publisher,
     publisher,
 )
-from cubeling.app.commands.character_options import OwnMotionsOption
+from cubeling.app.commands.character_options import CHARACTER_GROUP, OwnMotionsOption
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
 from cubeling.app.commands.session.play_options import (
     ALL_REALISM,
-    CHARACTER_GROUP,
     INSIDE_HELP,
     PICTURE_GROUP,
     CharacterOption,

@@ -55,8 +55,9 @@ def install(tmp_path_factory, monkeypatch):
     added_scenarios.cache_clear()
     for module in [name for name in sys.modules if name.startswith("cubeling_")]:
         del sys.modules[module]
-    for command in ("cubeling.app.commands.session.play", "cubeling.app.commands.session.demo"):
-        sys.modules.pop(command, None)  # their help lists what was installed
+    for command in ("play", "play_options", "replay", "demo"):
+        # Their help lists what was installed.
+        sys.modules.pop(f"cubeling.app.commands.session.{command}", None)
 
 
 def test_the_example_of_the_page_waves_and_cheers(install, hand):

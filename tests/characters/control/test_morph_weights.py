@@ -4,25 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cubeling.characters import Animator, Character, Pose, RootDelta
+from cubeling.characters import Animator, Character, RootDelta
 from cubeling.characters.model.look_at import LookAt, RangeMap
 from tests.characters.commands import command
-
-
-def test_layers_together_give_a_mesh_no_more_than_whole_morphs():
-    class Doubled:
-        def __init__(self, character, seed):
-            self._count = len(character.morphs)
-
-        def update(self, pose, context):
-            return Pose(
-                pose.translations, pose.rotations, pose.scales, np.linspace(-2, 2, self._count)
-            )
-
-    animator = Animator(Character.load("robot"), layers=(Doubled,))
-    shown = animator.update(command(0.0)).pose.morphs
-    assert shown is not None
-    assert (shown.min(), shown.max()) == (0.0, 1.0)
 
 
 def test_what_a_clip_states_beyond_a_whole_morph_stays():

@@ -79,10 +79,10 @@ def test_a_good_robot_conforms_over_a_real_serial_line(late: float, looks_every:
 
 
 class BusyComputer(SlowLine):
-    """Holds everybody up for 400 ms, now and then."""
+    """Holds everybody up for 400 ms, now and then: a check of five seconds fits in between."""
 
     def read(self, until: float) -> bytes:
-        if self.time % 5.3 < 0.02:
+        if self.time % 7.3 < 0.02:
             self.time += 0.4
             self.robot.advance(self.time)
         return super().read(until)
