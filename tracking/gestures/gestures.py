@@ -113,7 +113,9 @@ class CubeGestures:
         return se3.delta(self._last[1], pose) / (now - self._last[0])
 
     def _learn(self, state: CubeState, pose: Array) -> None:
-        self._stillness.add(state.timestamp, pose, state.covariance)
+        # A wrong focal length moves the poses of all frames alike, so it hides no tremor.
+        noise = np.diag(state.covariance) - state.focal_shift**2
+        self._stillness.add(state.timestamp, pose, noise)
         if self._stillness.still:
             elapsed = state.timestamp - self._last[0] if self._last else 0.0
             self._table_estimator.learn(pose, self._stillness.firm, min(elapsed, MAX_GAP_S))
