@@ -33,5 +33,9 @@ from cubeling.tracking.sources.base import (
     nanoseconds_of as nanoseconds_of,
 )
 from cubeling.tracking.sources.device import Health as Health
+from cubeling.tracking.sources.mcap_camera import (
+    FOCAL_DEVIATION as FOCAL_DEVIATION,
+    LENS_RECORD as LENS_RECORD,
+)
 from cubeling.tracking.tracker.several import CubesTracker as CubesTracker
 from cubeling.tracking.tracker.tracker import CubeTracker as CubeTracker

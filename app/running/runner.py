@@ -66,7 +66,7 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
     finally:
         runner.close()
     summary.robot_log = session.robot.log()
-    summary.lens = lens_notice(session.playground.lens, session.playground.intrinsics)
+    summary.lens = lens_notice(session.playground.lens, session.playground.measured_intrinsics)
     if isinstance(session.source, LiveFrames):
         summary.camera = session.source.health
     return summary

@@ -31,6 +31,10 @@ DISTORTION_MODELS = {4: "plumb_bob", 5: "plumb_bob", 8: "rational_polynomial"}
 """Name in ROS for each number of OpenCV's coefficients, k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
 
 
+DEVIATION_KEY = "focal_deviation"
+"""The key of `Intrinsics.focal_deviation` in the file; ROS ignores it."""
+
+
 @dataclass(frozen=True)
 class Intrinsics:
     """Pinhole and lens distortion of a camera, in OpenCV's model."""
@@ -166,7 +170,12 @@ class Intrinsics:
         if len(matrix) != 9:
             raise TrackingError(f"'camera_matrix' must hold 9 numbers, not {len(matrix)}")
         distortion = _numbers(document, "distortion_coefficients")
-        return cls(matrix.reshape(3, 3), distortion, (width, height))
+        deviation = document.get(DEVIATION_KEY)
+        if deviation is not None and not isinstance(deviation, float):
+            raise TrackingError(
+                f"'{DEVIATION_KEY}' must be a share such as 0.01, not {deviation!r}"
+            )
+        return cls(matrix.reshape(3, 3), distortion, (width, height), deviation)
 
     def save(self, path: str | Path, name: str = "camera") -> None:
         """Write a ROS `camera_info` YAML file, completely or not at all; `load` reads it back.
@@ -193,6 +202,8 @@ class Intrinsics:
             "rectification_matrix": _table(np.eye(3)),
             "projection_matrix": _table(np.hstack([self.matrix, np.zeros((3, 1))])),
         }
+        if self.focal_deviation is not None:
+            document[DEVIATION_KEY] = self.focal_deviation
         import yaml
 
         text = yaml.safe_dump(document, sort_keys=False, default_flow_style=None)

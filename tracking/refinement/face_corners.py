@@ -7,7 +7,6 @@ import numpy as np
 
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.detection.markers import Observation
-from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.geometry.robust_statistics import quantile
@@ -98,8 +97,9 @@ def fitted_faces(
 def _homography_fields(
     projection: Projection, camera_from_cube: Array, corners: Array, places: Array
 ) -> tuple[Array, Array]:
-    """Return the pixels of places on a face, (N, 2), and how each small homography of that face
-    moves them, (N, 2, 8) [px]. `corners` are those of its marker, (4, 3).
+    """Return where places on a face are seen, and how its eight small homographies move them.
+
+    `corners` are those of its marker, (4, 3). Pixels, (N, 2), and moves, (N, 2, 8) [px].
     """
     middle = corners.mean(axis=0)
     axes = np.stack([corners[1] - corners[0], corners[0] - corners[3]]) / 2

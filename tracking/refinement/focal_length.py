@@ -226,8 +226,10 @@ class FocalLengthEstimator:
         self.estimate = FocalLength(float(np.exp(shared[0])), max(deviation, LEAST_DEVIATION))
 
     def _linearise(self, views: _Views, shared: Array) -> tuple[Array, Array, Array, Array]:
-        """Return residuals, (V, 8 F) [px], their Jacobians by a view's own unknowns, (V, 8 F, 7),
-        and by the shared ones, (V, 8 F, 2 + 6 F), and their weights, (V, 8 F).
+        """Return residuals [px], their two Jacobians, and their weights, each for (V, 8 F) numbers.
+
+        The Jacobians are those by a view's own unknowns, (V, 8 F, 7), and by the shared ones,
+        (V, 8 F, 2 + 6 F).
         """
         count, faces = views.errors.shape
         middles = self._corners.mean(axis=1, keepdims=True)
