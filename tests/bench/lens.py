@@ -58,8 +58,9 @@ def play(seen_by: Camera) -> SequencePlan:
     """Return how a person who holds the cube in view plays with it."""
     return SequencePlan(
         speed=0.25,
-        turning=1.2,
-        depth=(0.3, 0.5),
+        turning=2.0,
+        pace=(0.6, 1.2),
+        depth=(0.25, 0.45),
         facing="corner",
         worn=True,
         shadows=True,

@@ -9,7 +9,7 @@ from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.detection.markers import Observation
 from cubeling.tracking.geometry.arrays import Array
 from cubeling.tracking.geometry.projection import Projection
-from cubeling.tracking.geometry.robust_statistics import quantile
+from cubeling.tracking.geometry.robust_statistics import quantile, tukey_weight
 from cubeling.tracking.refinement.edges.edge_fit import FittedEdges
 from cubeling.tracking.refinement.systematic_error import CORNER_ERROR_PX
 
@@ -22,6 +22,12 @@ of it: a rolling shutter slants a moving cube, too."""
 
 MIN_FACE_EDGES = 40
 """Fewer edge points do not show how a face is bent in the picture."""
+
+ROBUST_STEPS, MIN_OUTLIER_PX = 3, 0.1
+"""How often the weights of the edges are found, and an error that is no outlier; see `fit_edges`."""
+
+POINTS_ALIKE = 8.0
+"""So many points of an edge have their error in common: that of light, print and pixel phase."""
 
 HOMOGRAPHY_SPREAD_PX = 3.0
 """How far edges may be from where the pose puts them, one standard deviation."""
@@ -41,10 +47,11 @@ class FaceCorners:
     """Error of a corner along each axis, one standard deviation, besides that of the paper."""
 
     @property
-    def size(self) -> float:
-        """Mean length of the four sides [px]."""
+    def width(self) -> float:
+        """Width of the marker across its longest side [px]: a slanted one is narrow."""
         sides = self.corners - np.roll(self.corners, 1, axis=0)
-        return float(np.linalg.norm(sides, axis=1).mean())
+        (a, b), (c, d) = self.corners[2] - self.corners[0], self.corners[3] - self.corners[1]
+        return float(abs(a * d - b * c) / 2 / np.linalg.norm(sides, axis=1).max())
 
 
 def detected_faces(observations: Sequence[Observation]) -> list[FaceCorners]:
@@ -74,24 +81,47 @@ def fitted_faces(
     residual = fit.residual
     if profiles.bends is not None:
         residual = residual + profiles.bends[fit.strong] * edges.k1
-    error = float(np.hypot(CORNER_ERROR_PX, BLUR_ERROR_SHARE * blur))
+    common = float(np.hypot(CORNER_ERROR_PX, BLUR_ERROR_SHARE * blur))
     found = []
     for number, face in enumerate(cube.faces):
-        chosen = (profiles.face[fit.strong] == number) & (fit.robust > 0)
+        chosen = profiles.face[fit.strong] == number
         if face.name not in faces or np.count_nonzero(chosen) < MIN_FACE_EDGES:
             continue
         points = fit.strong[chosen]
         places = profiles.model.points[profiles.numbers[points]]
         fields = _homography_fields(projection, camera_from_cube, face.corners, places)[1]
         rows = np.einsum("ni,nij->nj", profiles.normals[points], fields)
-        weighted = rows * fit.weights[chosen, None]
         pixels, at_corners = _homography_fields(
             projection, camera_from_cube, face.corners, face.corners
         )
         prior = np.einsum("nij,nik->jk", at_corners, at_corners) / HOMOGRAPHY_SPREAD_PX**2
-        solution = np.linalg.solve(weighted.T @ rows + prior, weighted.T @ residual[chosen])
+        solution, covariance = _robust_solution(
+            rows, residual[chosen], fit.measured.information[points], prior
+        )
+        own = float(np.einsum("nij,jk,nik->", at_corners, covariance, at_corners)) / 8
+        error = float(np.hypot(common, np.sqrt(POINTS_ALIKE * own)))
         found.append(FaceCorners(face.name, pixels + at_corners @ solution, error))
     return found
+
+
+def _robust_solution(
+    rows: Array, residual: Array, information: Array, prior: Array
+) -> tuple[Array, Array]:
+    """Solve for the homography of a face by its edges, without those that do not fit it.
+
+    Returns it, (8,), and its covariance if all edge points were independent, (8, 8).
+
+    The weights of the pose would not do: what does not fit a wrong lens is no outlier.
+    """
+    weights, solution, normal = information, np.zeros(8), prior
+    for _ in range(ROBUST_STEPS):
+        weighted = rows * weights[:, None]
+        normal = weighted.T @ rows + prior
+        solution = np.linalg.solve(normal, weighted.T @ residual)
+        off = residual - rows @ solution
+        scale = 1.4826 * quantile(np.abs(off), 0.5)
+        weights = information * tukey_weight(off, max(4.685 * scale, MIN_OUTLIER_PX))
+    return np.asarray(solution, np.float64), np.asarray(np.linalg.inv(normal), np.float64)
 
 
 def _homography_fields(

@@ -13,28 +13,39 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from scipy.linalg import block_diag
 
-from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.cube.model import CubeModel, Face
 from cubeling.tracking.geometry import se3
-from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.arrays import Array, Indices
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import MIN_DEPTH
 from cubeling.tracking.geometry.robust_statistics import quantile
 from cubeling.tracking.refinement.face_corners import FaceCorners
-from cubeling.tracking.refinement.systematic_error import CORNER_ERROR_M
 
-K1_SPREAD, BLOOM_PX, FOLD_SPREAD = 0.15, 0.5, (0.0005, np.deg2rad(0.6))
-"""Standard deviations before anything is measured: of the radial distortion, of how far white grows
-over black [px], and of where a face was glued [m, rad]."""
+K1_SPREAD, BLOOM_PX = 0.15, 0.5
+"""Standard deviations before anything is measured: of the radial distortion, and of how far white
+grows over black [px]."""
 
-NEW_PLACE, NEW_ANGLE = 0.1, np.deg2rad(8)
+FOLD_SPREAD, PRINT_SPREAD_M, BEND_SPREAD_M = (0.0005, np.deg2rad(0.6)), 0.00012, 0.0002
+"""The same of where a face was glued [m, rad], of a marker's corner on its paper, and of how far
+bent paper lifts it [m]. All pictures have these in common, so many pictures do not make them small.
+"""
+
+NOISE_M = 0.00005
+"""What differs of them from picture to picture, as a hand presses on the paper [m]."""
+
+NEW_PLACE, NEW_ANGLE = 0.05, np.deg2rad(4)
 """Only a pose that differs by so much from all that were counted tells anything new: in place, as a
 share of the distance, or in rotation [rad]."""
 
-MIN_FACE_PX = 20.0
-"""The perspective of smaller markers is lost in the errors of their corners."""
+MIN_BETTER = 1.5
+"""A view replaces those from the same side whose corners have errors this many times its own."""
 
-MAX_VIEWS = 60
+MIN_FACE_PX = 15.0
+"""The perspective of narrower markers is lost in the errors of their corners."""
+
+MAX_VIEWS = 100
 """Pictures that are counted at most: those of some twenty seconds of play."""
 
 MAX_STEPS, MAX_CHANGE = 8, 0.4
@@ -110,6 +121,21 @@ class _Views:
         more.errors = np.concatenate([self.errors, errors[None]])
         return more
 
+    @property
+    def worst(self) -> Array:
+        """Largest error of a corner in each, (V,) [px]."""
+        return np.asarray(np.where(np.isfinite(self.errors), self.errors, 0.0).max(axis=1))
+
+    def without(self, numbers: Indices) -> "_Views":
+        """Return the views without some of them."""
+        fewer = _Views(self.errors.shape[1])
+        kept = np.setdiff1d(np.arange(len(self.poses)), numbers)
+        fewer.poses, fewer.blooms, fewer.errors = (
+            each[kept] for each in (self.poses, self.blooms, self.errors)
+        )
+        fewer.pixels, fewer.inward = self.pixels[kept], self.inward[kept]
+        return fewer
+
     def move(self, changes: Array) -> "_Views":
         """Return the views with poses and blooms that differ by (V, 7)."""
         moved = _Views(self.errors.shape[1])
@@ -140,11 +166,12 @@ class FocalLengthEstimator:
         self._corners = np.stack([face.corners for face in cube.faces])
         self._matrix, self._distortion = intrinsics.matrix, intrinsics.distortion
         assert intrinsics.focal_deviation is not None, "a stated focal length is not measured"
-        folds = np.tile(np.repeat(FOLD_SPREAD, 3), len(cube.faces))
-        spreads = np.concatenate([[intrinsics.focal_deviation, K1_SPREAD], folds])
-        self._prior = 1 / np.square(spreads)
-        self._shared = np.zeros(len(spreads))
-        """Logarithm of the scale, k1, and the folds of the faces, (2 + 6 F,)."""
+        self._prior = block_diag(
+            np.diag(1 / np.square([intrinsics.focal_deviation, K1_SPREAD])),
+            *(np.linalg.inv(_shape_covariance(face)) for face in cube.faces),
+        )
+        self._shared = np.zeros(len(self._prior))
+        """Logarithm of the scale, k1, and how far each corner is from its place [m], (2 + 12 F,)."""
         self._views = _Views(len(cube.faces))
         self.estimate = FocalLength(1.0, intrinsics.focal_deviation)
         """The best estimate."""
@@ -156,14 +183,21 @@ class FocalLengthEstimator:
 
     def learn(self, faces: Sequence[FaceCorners]) -> None:
         """Learn from the faces of one picture, each at most once, if they show anything new."""
-        large = [each for each in faces if each.size > MIN_FACE_PX]
+        large = [each for each in faces if each.width > MIN_FACE_PX]
         if self.done or len(large) < 2:
             return
         pose = self._pose(large)
-        if pose is None or not self._is_new(pose):
+        if pose is None:
             return
+        error = max(each.error_px for each in large)
+        near = self._near(pose)
+        # What was detected before the lens was known is replaced by what edges show more exactly.
+        worse = near[self._views.worst[near] > MIN_BETTER * error]
+        if len(near) and not len(worse):
+            return
+        views = self._views.without(worse)
         seen = [(self._numbers[each.face], each) for each in large]
-        self._solve(self._views.add(pose, seen))
+        self._solve(views.add(pose, seen))
 
     def _camera(self, shared: Array) -> Array:
         scale = np.exp(shared[0])
@@ -182,12 +216,14 @@ class FocalLengthEstimator:
             return None
         return se3.pose(se3.rotation(np.ravel(turn)), np.ravel(shift))
 
-    def _is_new(self, pose: Array) -> bool:
+    def _near(self, pose: Array) -> Indices:
+        """Numbers of the views that show the cube from nearly the same side."""
         if not len(self._views.poses):
-            return True
+            return np.empty(0, np.intp)
         deltas = se3.deltas(pose, self._views.poses)
         places, angles = np.linalg.norm(deltas.reshape(-1, 2, 3), axis=2).T
-        return bool(((places > NEW_PLACE * abs(pose[2, 3])) | (angles > NEW_ANGLE)).all())
+        near = (places < NEW_PLACE * abs(pose[2, 3])) & (angles < NEW_ANGLE)
+        return np.flatnonzero(near)
 
     def _solve(self, views: _Views) -> None:
         """Adjust all views together; keep them unless the last one is not of the whole cube."""
@@ -203,9 +239,9 @@ class FocalLengthEstimator:
             cross = np.swapaxes(weighted, 1, 2) @ common
             solved = np.linalg.solve(normal, np.concatenate([cross, right[..., None]], axis=2))
             flat = common.reshape(-1, len(shared))
-            information = np.diag(self._prior) + flat.T @ (flat * weights.reshape(-1, 1))
+            information = self._prior + flat.T @ (flat * weights.reshape(-1, 1))
             information -= np.einsum("vij,vik->jk", cross, solved[..., :-1])
-            score = flat.T @ (weights * residual).ravel() - self._prior * shared
+            score = flat.T @ (weights * residual).ravel() - self._prior @ shared
             score -= np.einsum("vij,vi->j", cross, solved[..., -1])
             inverse = np.asarray(np.linalg.inv(information), np.float64)
             step = inverse @ score
@@ -229,14 +265,10 @@ class FocalLengthEstimator:
         """Return residuals [px], their two Jacobians, and their weights, each for (V, 8 F) numbers.
 
         The Jacobians are those by a view's own unknowns, (V, 8 F, 7), and by the shared ones,
-        (V, 8 F, 2 + 6 F).
+        (V, 8 F, 2 + 12 F).
         """
         count, faces = views.errors.shape
-        middles = self._corners.mean(axis=1, keepdims=True)
-        folds = shared[2:].reshape(faces, 1, 6)
-        # Folds are small: their rotation is linear.
-        turned = np.cross(folds[..., 3:], self._corners - middles)
-        points = (self._corners + folds[..., :3] + turned).reshape(-1, 3)
+        points = self._corners.reshape(-1, 3) + shared[2:].reshape(-1, 3)
         rotations = views.poses[:, :3, :3]
         arms = points @ np.swapaxes(rotations, 1, 2)
         camera, zero = self._camera(shared), np.zeros(3)
@@ -252,15 +284,13 @@ class FocalLengthEstimator:
         own = np.concatenate(
             [by_point, -by_point @ se3.hat(arms), inward[..., None]], axis=3
         ).reshape(count, -1, 7)
+        common = np.zeros((count, 4 * faces, 2, 2 + 12 * faces))
+        common[..., 0] = by_focal.reshape(count, -1, 2)
+        common[..., 1] = by_all[:, 10].reshape(count, -1, 2)
         in_cube = by_point @ rotations[:, None]
-        by_turn = -in_cube @ se3.hat((self._corners - middles).reshape(-1, 3))
-        by_fold = np.concatenate([in_cube, by_turn], axis=3).reshape(count, faces, 8, 6)
-        common = np.zeros((count, faces, 8, 2 + 6 * faces))
-        common[..., 0] = by_focal.reshape(count, faces, 8)
-        common[..., 1] = by_all[:, 10].reshape(count, faces, 8)
-        for face in range(faces):
-            common[:, face, :, 2 + 6 * face : 8 + 6 * face] = by_fold[:, face]
-        paper = CORNER_ERROR_M * camera[0, 0] / views.poses[:, 2, 3:]
+        for corner in range(4 * faces):
+            common[:, corner, :, 2 + 3 * corner : 5 + 3 * corner] = in_cube[:, corner]
+        paper = NOISE_M * camera[0, 0] / views.poses[:, 2, 3:]
         sigmas = np.repeat(np.hypot(views.errors, paper), 8, axis=1)
         flat = residual.reshape(count, -1)
         # Huber's weights: a corner under a finger counts less.
@@ -277,6 +307,16 @@ def _fits(residual: Array, weights: Array, views: _Views) -> bool:
     side = float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean())
     off = quantile(np.abs(residual[weights > 0]), 0.5)
     return off < max(MAX_RESIDUAL_PX, MAX_RESIDUAL_SHARE * side)
+
+
+def _shape_covariance(face: Face) -> Array:
+    """Covariance of how far the corners of a face are from their places, (12, 12) [m²]."""
+    arms = face.corners - face.corners.mean(axis=0)
+    by_fold = np.concatenate([np.tile(np.eye(3), (4, 1)), -se3.hat(arms).reshape(12, 3)], axis=1)
+    along = PRINT_SPREAD_M**2 * np.eye(3)
+    out = (BEND_SPREAD_M**2 - PRINT_SPREAD_M**2) * np.outer(face.normal, face.normal)
+    fold = by_fold * np.repeat(FOLD_SPREAD, 3)
+    return np.asarray(fold @ fold.T + np.kron(np.eye(4), along + out), np.float64)
 
 
 def _inward(corners: Array) -> Array:

@@ -19,6 +19,11 @@ from cubeling.tracking.refinement.focal_length import (
 from cubeling.tracking.tracker.prediction import Track, TrackedPose
 
 
+MAX_EDGE_DEVIATION = 0.06
+"""Through a lens whose focal length is off by more than this, as a share, the edges of one face are
+followed and those of another are lost, which would prove the wrong lens right."""
+
+
 class MeasuredLens:
     """What is known of a lens, and through which one the tracker looks.
 
@@ -37,6 +42,11 @@ class MeasuredLens:
     def learns(self) -> bool:
         """Whether more pictures can tell more."""
         return self._estimator is not None and not self._estimator.done
+
+    @property
+    def trusts_edges(self) -> bool:
+        """Whether the lens in use is right enough for the edges to be found where they are."""
+        return self._in_use.deviation < MAX_EDGE_DEVIATION
 
     @property
     def scale(self) -> float:

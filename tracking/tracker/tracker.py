@@ -118,12 +118,14 @@ class CubeTracker:
             markers = markers or FrameMarkers(frame, self._detectors)
             expected = prediction.camera_from_cube if prediction else None
             candidates = self._global_detector.detect(image, markers, expected, tone, thorough)
-            if self._measured.learns:
-                # Whether or not a pose is trusted: a wrong lens is a reason why none is.
-                seen = markers.read(self.cube.dictionary, "first window")
-                self._measured.learn(detected_faces(markers_of(self.cube, seen)))
             # Judge the poses: which one is it, and can a hand have moved the cube there?
             verdict = judge_detected(candidates, prediction, past, now)
+
+        if self._measured.learns and (match.candidate is None or not self._measured.trusts_edges):
+            # Whether or not a pose is trusted: a wrong lens is a reason why none is.
+            markers = markers or FrameMarkers(frame, self._detectors)
+            seen = markers.read(self.cube.dictionary, "first window")
+            self._measured.learn(detected_faces(markers_of(self.cube, seen)))
 
         # Add a trusted pose to the track, with its velocity; else keep predicting.
         self._past = verdict.past
@@ -138,7 +140,7 @@ class CubeTracker:
             return self._predict(now, "unsure")
         if found.edges is not None:
             self._lens.learn(pose, found.edges)
-            if self._measured.learns:
+            if self._measured.learns and self._measured.trusts_edges:
                 lens = self._projection
                 self._measured.learn(fitted_faces(self.cube, lens, pose, found.faces, found.edges))
         velocity, acceleration = track.motion(pose, noise, now)
