@@ -24,7 +24,7 @@ MIN_FACE_EDGES = 40
 """Fewer edge points do not show how a face is bent in the picture."""
 
 ROBUST_STEPS, MIN_OUTLIER_PX = 3, 0.1
-"""How often the weights of the edges are found, and an error that is no outlier; see `fit_edges`."""
+"""How often the weights of edges are found, and an error that is no outlier, as in `fit_edges`."""
 
 POINTS_ALIKE = 8.0
 """So many points of an edge have their error in common: that of light, print and pixel phase."""

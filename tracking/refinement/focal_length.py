@@ -171,7 +171,7 @@ class FocalLengthEstimator:
             *(np.linalg.inv(_shape_covariance(face)) for face in cube.faces),
         )
         self._shared = np.zeros(len(self._prior))
-        """Logarithm of the scale, k1, and how far each corner is from its place [m], (2 + 12 F,)."""
+        """Logarithm of the scale, k1, and how far each corner is off its place [m], (2 + 12 F,)."""
         self._views = _Views(len(cube.faces))
         self.estimate = FocalLength(1.0, intrinsics.focal_deviation)
         """The best estimate."""
@@ -187,17 +187,20 @@ class FocalLengthEstimator:
         if self.done or len(large) < 2:
             return
         pose = self._pose(large)
-        if pose is None:
+        if pose is None or not self.wants(pose, max(each.error_px for each in large)):
             return
-        error = max(each.error_px for each in large)
-        near = self._near(pose)
         # What was detected before the lens was known is replaced by what edges show more exactly.
-        worse = near[self._views.worst[near] > MIN_BETTER * error]
-        if len(near) and not len(worse):
-            return
-        views = self._views.without(worse)
+        views = self._views.without(self._near(pose))
         seen = [(self._numbers[each.face], each) for each in large]
         self._solve(views.add(pose, seen))
+
+    def wants(self, camera_from_cube: Array, error_px: float) -> bool:
+        """Whether a picture of the cube at a pose, (4, 4), can tell anything new.
+
+        `error_px` is the error of its corners.
+        """
+        near = self._near(camera_from_cube)
+        return not len(near) or bool((self._views.worst[near] > MIN_BETTER * error_px).all())
 
     def _camera(self, shared: Array) -> Array:
         scale = np.exp(shared[0])
@@ -240,7 +243,8 @@ class FocalLengthEstimator:
             solved = np.linalg.solve(normal, np.concatenate([cross, right[..., None]], axis=2))
             flat = common.reshape(-1, len(shared))
             information = self._prior + flat.T @ (flat * weights.reshape(-1, 1))
-            information -= np.einsum("vij,vik->jk", cross, solved[..., :-1])
+            unknowns = len(shared)
+            information -= cross.reshape(-1, unknowns).T @ solved[..., :-1].reshape(-1, unknowns)
             score = flat.T @ (weights * residual).ravel() - self._prior @ shared
             score -= np.einsum("vij,vi->j", cross, solved[..., -1])
             inverse = np.asarray(np.linalg.inv(information), np.float64)

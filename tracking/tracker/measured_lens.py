@@ -16,8 +16,8 @@ from cubeling.tracking.refinement.focal_length import (
     FocalLength,
     FocalLengthEstimator,
 )
+from cubeling.tracking.refinement.systematic_error import CORNER_ERROR_PX
 from cubeling.tracking.tracker.prediction import Track, TrackedPose
-
 
 MAX_EDGE_DEVIATION = 0.06
 """Through a lens whose focal length is off by more than this, as a share, the edges of one face are
@@ -47,6 +47,16 @@ class MeasuredLens:
     def trusts_edges(self) -> bool:
         """Whether the lens in use is right enough for the edges to be found where they are."""
         return self._in_use.deviation < MAX_EDGE_DEVIATION
+
+    def wants(self, camera_from_cube: Array) -> bool:
+        """Whether the edges at a pose, (4, 4), can tell more."""
+        estimator = self._estimator
+        return (
+            estimator is not None
+            and self.learns
+            and self.trusts_edges
+            and estimator.wants(camera_from_cube, CORNER_ERROR_PX)
+        )
 
     @property
     def scale(self) -> float:

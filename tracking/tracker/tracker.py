@@ -140,7 +140,7 @@ class CubeTracker:
             return self._predict(now, "unsure")
         if found.edges is not None:
             self._lens.learn(pose, found.edges)
-            if self._measured.learns and self._measured.trusts_edges:
+            if self._measured.wants(pose):
                 lens = self._projection
                 self._measured.learn(fitted_faces(self.cube, lens, pose, found.faces, found.edges))
         velocity, acceleration = track.motion(pose, noise, now)
