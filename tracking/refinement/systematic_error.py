@@ -29,6 +29,11 @@ UNSTATED_FOCAL = 0.016
 """Standard deviation of the focal length, as a share of it, of a lens whose file does not state it:
 those of makers of cameras and of other programs are off by 2 to 3 % (`make bench-photographs`)."""
 
+MAX_LINEAR_FOCAL, FOCAL_CURVATURE = 0.05, 0.15
+"""Standard deviation of a focal length, as a share, up to which a pose moves in proportion to it,
+and by how much a larger one moves it besides, by its square: turns [rad], and shifts as a multiple
+of half a marker (`test_measured_lens`)."""
+
 MEASURED_K1, CLAIMED_K1 = 0.005, 0.1
 """Error of k1 of a lens that was measured, and of one that claims no distortion: hardly any has
 none. One standard deviation, as it is before play tells more."""
@@ -49,8 +54,8 @@ class SystematicError:
     ) -> tuple[Array, Array]:
         """Covariance of a pose delta by the corners of `faces`, (6, 6), and how the lens moves it.
 
-        The latter are the pose deltas by one standard deviation of k1 and of the focal length,
-        (6, 2).
+        The latter are the pose deltas by one standard deviation of k1 and of the focal length, and
+        those along and about each axis by which a guessed one moves the pose besides, (6, 8).
         `k1_error` is how far the radial distortion is off, and `blur` the blur of the image [px],
         one standard deviation each. Where the lens was never measured, how k1 stretches the cube is
         solved for with the pose, and its error is among those by the corners.
@@ -81,4 +86,7 @@ class SystematicError:
         moved = focal * radial_bend(middle) + bends * (not solved)
         modes = np.stack([moved, focal * flat], axis=2).reshape(-1, 2)
         moves = inverse @ (rows.T @ (modes * (k1_error, self._focal))) / error**2
+        curved = FOCAL_CURVATURE * self._focal**2 if self._focal > MAX_LINEAR_FOCAL else 0.0
+        besides = curved * np.diag([*[self._half] * 3, 1.0, 1.0, 1.0])
+        moves = np.concatenate([moves, besides], axis=1)
         return np.asarray(inverse[:, :6] + shift, np.float64), np.asarray(moves, np.float64)
