@@ -40,7 +40,7 @@ CAMERAS = {"phone, upright": PHONE, "wide angle, 100°": WIDE_ANGLE, "webcam, k1
 FACTORS = (1.7, 1 / 1.7)
 """By how much a guess is too long."""
 
-PLAY_SECONDS, PLAY_SEEDS = 7.0, (1, 2)
+PLAY_SECONDS, PLAY_SEEDS = 6.0, (1, 2)
 """How long the cube is played with, and of how many motions."""
 
 MAX_DEPTH_ERROR, MAX_ANGLE = 0.03, np.deg2rad(1.0)
