@@ -18,6 +18,11 @@ GUESSED_FIELD_OF_VIEW, GUESSED_FOCAL_DEVIATION = math.radians(60), 0.35
 """Field of view of a common camera along the longer side of its picture [rad], and the standard
 deviation of its focal length as a share of it: phones and webcams have 50° to 100°."""
 
+GUESSED_CENTRE, MAX_CALIBRATED_DEVIATION = 0.008, 0.005
+"""How far the principal point of such a camera is from the middle, one standard deviation as a
+share of the longer side, and the focal deviation above which a lens was not calibrated: `cubeling
+calibrate` accepts none above."""
+
 CAMERA_FILE = FileKind(
     "camera file",
     (".yaml", ".yml"),
@@ -86,6 +91,16 @@ class Intrinsics:
         focal = max(size) / 2 / math.tan(GUESSED_FIELD_OF_VIEW / 2)
         matrix = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
         return cls(matrix, np.zeros(5), size, GUESSED_FOCAL_DEVIATION)
+
+    @property
+    def centre_deviation(self) -> float:
+        """Standard deviation of the principal point along each axis [px]; 0 where calibrated.
+
+        >>> Intrinsics.guess((1000, 500)).centre_deviation
+        8.0
+        """
+        stated = self.focal_deviation or 0.0
+        return max(self.size) * GUESSED_CENTRE if stated > MAX_CALIBRATED_DEVIATION else 0.0
 
     def undistort(self, points: ArrayLike) -> Array:
         """Move pixels to where the same camera without lens distortion would see them.

@@ -13,8 +13,9 @@ from cubeling.tracking.geometry.robust_statistics import quantile, tukey_weight
 from cubeling.tracking.refinement.edges.edge_fit import FittedEdges
 from cubeling.tracking.refinement.systematic_error import CORNER_ERROR_PX
 
-DETECTED_CORNER_PX = 0.25
-"""Error of a corner that OpenCV has detected, along each axis, one standard deviation."""
+DETECTED_CORNER_PX = 0.45
+"""Error of a corner that OpenCV has detected, along each axis, one standard deviation: how white
+grows over black moves those of each face by another amount."""
 
 MAX_BLUR_PX, BLUR_ERROR_SHARE = 3.0, 0.1
 """Median motion blur [px] above which edges tell nothing of perspective, and their error as a share
@@ -113,7 +114,9 @@ def _robust_solution(
 
     The weights of the pose would not do: what does not fit a wrong lens is no outlier.
     """
-    weights, solution, normal = information, np.zeros(8), prior
+    weights: Array = information
+    solution: Array = np.zeros(8)
+    normal: Array = prior
     for _ in range(ROBUST_STEPS):
         weighted = rows * weights[:, None]
         normal = weighted.T @ rows + prior

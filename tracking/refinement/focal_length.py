@@ -59,13 +59,13 @@ marker's side, whichever is more: those of a flat sheet do not."""
 MAX_SCALE = 3.0
 """No camera's focal length differs by such a factor from a guess."""
 
-KNOWN_DEVIATION, LEAST_DEVIATION = 0.007, 0.004
+KNOWN_DEVIATION, LEAST_DEVIATION = 0.007, 0.006
 """Standard deviation, as a share, from which on a focal length is known, and the smallest that is
 stated: all pictures show the same folded cube."""
 
 MIN_GAIN = 0.8
 """Another focal length is worth taking once its standard deviation has shrunk to this share of that
-of the one in use, or where that is wrong by more than one of them."""
+of the one in use, or where that is wrong by more than half of one."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class FocalLength:
         >>> FocalLength(1.01, 0.02).is_better(FocalLength(1.0, 0.035))
         True
         """
-        wrong = abs(np.log(self.scale / other.scale)) > self.deviation
+        wrong = abs(np.log(self.scale / other.scale)) > self.deviation / 2
         return bool(wrong or self.deviation < MIN_GAIN * other.deviation)
 
 
@@ -166,12 +166,14 @@ class FocalLengthEstimator:
         self._corners = np.stack([face.corners for face in cube.faces])
         self._matrix, self._distortion = intrinsics.matrix, intrinsics.distortion
         assert intrinsics.focal_deviation is not None, "a stated focal length is not measured"
+        centre = [max(intrinsics.centre_deviation, 1.0)] * 2
         self._prior = block_diag(
-            np.diag(1 / np.square([intrinsics.focal_deviation, K1_SPREAD])),
+            np.diag(1 / np.square([intrinsics.focal_deviation, K1_SPREAD, *centre])),
             *(np.linalg.inv(_shape_covariance(face)) for face in cube.faces),
         )
         self._shared = np.zeros(len(self._prior))
-        """Logarithm of the scale, k1, and how far each corner is off its place [m], (2 + 12 F,)."""
+        """Logarithm of the scale, k1, how far the principal point is from where it is said to be
+        [px], and each corner from its place [m], (4 + 12 F,)."""
         self._views = _Views(len(cube.faces))
         self.estimate = FocalLength(1.0, intrinsics.focal_deviation)
         """The best estimate."""
@@ -204,7 +206,9 @@ class FocalLengthEstimator:
 
     def _camera(self, shared: Array) -> Array:
         scale = np.exp(shared[0])
-        return np.asarray(self._matrix * [[scale, 1, 1], [1, scale, 1], [1, 1, 1]], np.float64)
+        camera = self._matrix * [[scale, 1, 1], [1, scale, 1], [1, 1, 1]]
+        camera[:2, 2] += shared[2:4]
+        return np.asarray(camera, np.float64)
 
     def _pose(self, faces: Sequence[FaceCorners]) -> Array | None:
         """Find the pose of the cube at the present focal length; None where there is none."""
@@ -269,10 +273,10 @@ class FocalLengthEstimator:
         """Return residuals [px], their two Jacobians, and their weights, each for (V, 8 F) numbers.
 
         The Jacobians are those by a view's own unknowns, (V, 8 F, 7), and by the shared ones,
-        (V, 8 F, 2 + 12 F).
+        (V, 8 F, 4 + 12 F).
         """
         count, faces = views.errors.shape
-        points = self._corners.reshape(-1, 3) + shared[2:].reshape(-1, 3)
+        points = self._corners.reshape(-1, 3) + shared[4:].reshape(-1, 3)
         rotations = views.poses[:, :3, :3]
         arms = points @ np.swapaxes(rotations, 1, 2)
         camera, zero = self._camera(shared), np.zeros(3)
@@ -288,12 +292,13 @@ class FocalLengthEstimator:
         own = np.concatenate(
             [by_point, -by_point @ se3.hat(arms), inward[..., None]], axis=3
         ).reshape(count, -1, 7)
-        common = np.zeros((count, 4 * faces, 2, 2 + 12 * faces))
+        common = np.zeros((count, 4 * faces, 2, 4 + 12 * faces))
         common[..., 0] = by_focal.reshape(count, -1, 2)
         common[..., 1] = by_all[:, 10].reshape(count, -1, 2)
+        common[..., 2:4] = np.eye(2)
         in_cube = by_point @ rotations[:, None]
         for corner in range(4 * faces):
-            common[:, corner, :, 2 + 3 * corner : 5 + 3 * corner] = in_cube[:, corner]
+            common[:, corner, :, 4 + 3 * corner : 7 + 3 * corner] = in_cube[:, corner]
         paper = NOISE_M * camera[0, 0] / views.poses[:, 2, 3:]
         sigmas = np.repeat(np.hypot(views.errors, paper), 8, axis=1)
         flat = residual.reshape(count, -1)

@@ -47,6 +47,7 @@ class SystematicError:
         self._corners = {face.name: face.corners for face in cube.faces}
         self._half = cube.marker_size / 2
         stated = projection.intrinsics.focal_deviation
+        self._centre = projection.intrinsics.centre_deviation
         self._focal = UNSTATED_FOCAL if stated is None else stated
 
     def covariance(
@@ -54,8 +55,9 @@ class SystematicError:
     ) -> tuple[Array, Array]:
         """Covariance of a pose delta by the corners of `faces`, (6, 6), and how the lens moves it.
 
-        The latter are the pose deltas by one standard deviation of k1 and of the focal length, and
-        those along and about each axis by which a guessed one moves the pose besides, (6, 8).
+        The latter are the pose deltas by one standard deviation of k1, of the focal length and of
+        the principal point, and those by which a guessed focal length moves the pose besides along
+        and about each axis, (6, 10).
         `k1_error` is how far the radial distortion is off, and `blur` the blur of the image [px],
         one standard deviation each. Where the lens was never measured, how k1 stretches the cube is
         solved for with the pose, and its error is among those by the corners.
@@ -85,7 +87,9 @@ class SystematicError:
         # Where a lens with a larger k1, and with a longer focal length, shows the corners.
         moved = focal * radial_bend(middle) + bends * (not solved)
         modes = np.stack([moved, focal * flat], axis=2).reshape(-1, 2)
-        moves = inverse @ (rows.T @ (modes * (k1_error, self._focal))) / error**2
+        centre = np.tile(np.eye(2), (len(points), 1))
+        modes = np.concatenate([modes * (k1_error, self._focal), centre * self._centre], axis=1)
+        moves = inverse @ (rows.T @ modes) / error**2
         curved = FOCAL_CURVATURE * self._focal**2 if self._focal > MAX_LINEAR_FOCAL else 0.0
         besides = curved * np.diag([*[self._half] * 3, 1.0, 1.0, 1.0])
         moves = np.concatenate([moves, besides], axis=1)

@@ -19,7 +19,7 @@ from cubeling.tracking.refinement.focal_length import (
 from cubeling.tracking.refinement.systematic_error import CORNER_ERROR_PX
 from cubeling.tracking.tracker.prediction import Track, TrackedPose
 
-MAX_EDGE_DEVIATION = 0.06
+MAX_EDGE_DEVIATION = 0.12
 """Through a lens whose focal length is off by more than this, as a share, the edges of one face are
 followed and those of another are lost, which would prove the wrong lens right."""
 
@@ -102,5 +102,5 @@ def _pose_through(pose: Array, points: Array, before: Intrinsics, after: Intrins
     turn, shift = cv2.Rodrigues(pose[:3, :3])[0], pose[:3, 3:]
     pixels = cv2.projectPoints(points, turn, shift, before.matrix, before.distortion)[0]
     start = shift * [[1], [1], [after.matrix[0, 0] / before.matrix[0, 0]]]
-    turn, shift = cv2.solvePnPRefineLM(points, pixels, after.matrix, after.distortion, turn, start)
-    return se3.pose(se3.rotation(np.ravel(turn)), np.ravel(shift))
+    found = cv2.solvePnPRefineLM(points, pixels, after.matrix, after.distortion, turn, start)
+    return se3.pose(se3.rotation(np.ravel(found[0])), np.ravel(found[1]))

@@ -30,10 +30,10 @@ def pictures(
     """Where a lens shows the corners of a cube that is turned and moved, with noise."""
     random = np.random.default_rng(seed)
     for _ in range(count):
-        turn = random.uniform((0.3, 0.4, -1.0), (0.8, 0.9, 1.0)).tolist()
+        about_x, about_y, about_z = random.uniform((0.3, 0.4, -1.0), (0.8, 0.9, 1.0)).tolist()
         depth = float(random.uniform(0.25, 0.45))
         x, y = (depth * random.uniform(-1, 1, 2) * (0.3, 0.2)).tolist()
-        pose = held(*turn, at=(x, y, depth))
+        pose = held(about_x, about_y, about_z, at=(x, y, depth))
         yield [
             FaceCorners(
                 name,
