@@ -94,14 +94,15 @@ class Played:
 
     @property
     def settled(self) -> float:
-        """Time from which on the poses are good [s]."""
+        """Time from which on nearly all poses are good, of those of a second at least [s]."""
         good = (np.abs(self.depth_errors) < MAX_DEPTH_ERROR) & (self.angles < MAX_ANGLE)
         shares = np.cumsum(good[::-1])[::-1] / np.arange(len(good), 0, -1)
-        bad = np.flatnonzero(~good | (shares < SETTLED_SHARE))
-        late = bad[shares[bad] < SETTLED_SHARE]
+        early = self.times < self.times[-1] - 1.0
+        late = np.flatnonzero(early & (shares < SETTLED_SHARE))
         if not len(late):
-            return float(self.times[0]) if len(self.times) else np.inf
-        return float(self.times[late[-1] + 1]) if late[-1] + 1 < len(self.times) else np.inf
+            return float(self.times[0])
+        after = int(late[-1]) + 1
+        return float(self.times[after]) if early[after] else np.inf
 
 
 def play_through(made: Sequence, guesses: Items[Intrinsics]) -> list[Played]:
