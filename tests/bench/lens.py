@@ -109,11 +109,13 @@ def play_through(made: Sequence, guesses: Items[Intrinsics]) -> list[Played]:
     """Track a sequence through several guesses of its lens."""
     trackers = [CubeTracker(CubeModel.load(made.cube), guess) for guess in guesses]
     states: list[list[CubeState]] = [[] for _ in guesses]
-    for index in range(made.count):
+    # A play that leaves the picture ends there for a while.
+    shown = [index for index in range(made.count) if made.in_view(index)]
+    for index in shown:
         frame = Frame(made.frame(index), made.timestamp(index), index)
         for tracker, seen in zip(trackers, states, strict=True):
             seen.append(tracker.update(frame))
-    truths = [made.truth(index) for index in range(made.count)]
+    truths = [made.truth(index) for index in shown]
     return [
         _played(tracker, seen, truths, float(made.matrix[0, 0]))
         for tracker, seen in zip(trackers, states, strict=True)
@@ -167,7 +169,7 @@ def print_played(console: Console) -> None:
     for name, seed, words, each in played():
         late = each.times >= 5
         console.print(
-            f"{name} ({seed}), guess {words}: trusted {len(each.times) / (PLAY_SECONDS * 30):.0%}, "
+            f"{name} ({seed}), guess {words}: {len(each.times)} trusted frames, "
             f"good from {each.settled:.1f} s, worst error {each.ratios.max():.2f} σ; after 5 s, "
             f"95 %: depth {np.quantile(np.abs(each.depth_errors[late]), 0.95):.2%}, "
             f"{np.degrees(np.quantile(each.angles[late], 0.95)):.2f}°; "
