@@ -133,8 +133,12 @@ def _played(
             angle = float(np.linalg.norm(error[3:]))
             rows.append((state.timestamp, error[2] / truth[2, 3], angle, ratio))
     found = tracker.measured_intrinsics
+    times, depth_errors, angles, ratios = np.array(rows).reshape(-1, 4).T
     return Played(
-        *np.array(rows).reshape(-1, 4).T,
+        times,
+        depth_errors,
+        angles,
+        ratios,
         float(found.matrix[0, 0]) / focal - 1,
         float(found.focal_deviation or 0.0),
         tracker.lens,

@@ -119,11 +119,12 @@ def _robust_solution(
     normal: Array = prior
     for _ in range(ROBUST_STEPS):
         weighted = rows * weights[:, None]
-        normal = weighted.T @ rows + prior
-        solution = np.linalg.solve(normal, weighted.T @ residual)
+        normal = np.asarray(weighted.T @ rows + prior, np.float64)
+        solution = np.asarray(np.linalg.solve(normal, weighted.T @ residual), np.float64)
         off = residual - rows @ solution
         scale = 1.4826 * quantile(np.abs(off), 0.5)
-        weights = information * tukey_weight(off, max(4.685 * scale, MIN_OUTLIER_PX))
+        robust = tukey_weight(off, max(4.685 * scale, MIN_OUTLIER_PX))
+        weights = np.asarray(information * robust, np.float64)
     return np.asarray(solution, np.float64), np.asarray(np.linalg.inv(normal), np.float64)
 
 

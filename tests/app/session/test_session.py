@@ -94,6 +94,7 @@ def test_a_replay_begins_with_the_same_doubt_of_the_lens(recorded):
 
     with open_source(str(recorded("jpeg")[0])) as source:
         guess = Intrinsics.guess(SIZE)
+        assert source.intrinsics is not None
         assert source.intrinsics.focal_deviation == guess.focal_deviation
         np.testing.assert_array_equal(source.intrinsics.matrix, guess.matrix)
 

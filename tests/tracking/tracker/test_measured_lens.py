@@ -51,19 +51,23 @@ def test_depth_through_a_wrong_guess_is_doubted_then_right(
     assert last.focal_scale == pytest.approx(1 / factor, rel=0.03)
     assert last.camera_from_cube[2, 3] == pytest.approx(truth[2, 3], rel=0.03)
     assert se3.angle_between(last.camera_from_cube, truth) < np.deg2rad(1)
+    first = states[0].camera_from_cube
+    assert first is not None
     # The doubt of the first frame is that of the guess, in the depth.
-    assert np.sqrt(states[0].covariance[2, 2]) > 0.2 * states[0].camera_from_cube[2, 3]
-    assert abs(states[0].focal_shift[2]) > 0.2 * states[0].camera_from_cube[2, 3]
+    assert np.sqrt(states[0].covariance[2, 2]) > 0.2 * first[2, 3]
+    assert abs(states[0].focal_shift[2]) > 0.2 * first[2, 3]
 
 
 @pytest.mark.slow(reason="a focal length is known after a second of play")
 def test_the_same_frames_tell_the_same_lens(shown: list[tuple[Frame, Array]]) -> None:
     one, other = (CubeTracker(CUBE, GUESSES[1.7]) for _ in range(2))
     for a, b in zip(tracked(one, shown[:12]), tracked(other, shown[:12]), strict=True):
+        assert a.camera_from_cube is not None
+        assert b.camera_from_cube is not None
         assert np.array_equal(a.camera_from_cube, b.camera_from_cube)
         assert a.focal_scale == b.focal_scale
     assert np.array_equal(one.measured_intrinsics.matrix, other.measured_intrinsics.matrix)
-    assert one.measured_intrinsics.focal_deviation < 0.1
+    assert (one.measured_intrinsics.focal_deviation or 1.0) < 0.1
     assert not one.measured_intrinsics.distortion.any()
 
 
