@@ -89,6 +89,11 @@ class PreferenceStore:
         self.now = self._began
         """The preferences now."""
 
+    @property
+    def folder(self) -> Path | None:
+        """The folder of the file; None where nothing is kept."""
+        return None if self._path is None else self._path.parent
+
     def change(self, **fields: Any) -> None:
         """Note what the player changed."""
         self.now = replace(self.now, **fields)

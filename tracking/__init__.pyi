@@ -34,6 +34,10 @@ from cubeling.tracking.sources.base import (
     nanoseconds_of as nanoseconds_of,
 )
 from cubeling.tracking.sources.device import Health as Health
+from cubeling.tracking.sources.mcap_camera import (
+    FOCAL_DEVIATION as FOCAL_DEVIATION,
+    LENS_RECORD as LENS_RECORD,
+)
 from cubeling.tracking.tracker.print_check import (
     PrintCheck as PrintCheck,
     PrintFault as PrintFault,

@@ -156,6 +156,8 @@ class Playground:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
         self.intrinsics = intrinsics
+        """Of the camera, as they are at the beginning of the scenario."""
+        self._lens = intrinsics
         self.known_cubes = tuple(known_cubes)
         self._look, self._lap = look, lap
         self._controller, self._inside = controller, inside
@@ -226,7 +228,11 @@ class Playground:
     def look_through(self, intrinsics: Intrinsics) -> None:
         """Take another camera; `play` must follow, as the table is another one in its picture."""
         self._renderer.look_through(intrinsics)
-        self.intrinsics = intrinsics
+        self.intrinsics = self._lens = intrinsics
+
+    def keep_lens(self) -> None:
+        """Begin with the lens as play has measured it; `play` must follow."""
+        self.look_through(self.measured_intrinsics)
 
     @property
     def draws_in_software(self) -> bool:
@@ -254,12 +260,25 @@ class Playground:
         """
         for name, value in checkpoint.content().items():
             setattr(self, name, value)
+        self._see_through(self._tracker.intrinsics)
         self._begin_to_see(self.cube)
+
+    def _see_through(self, lens: Intrinsics) -> None:
+        """Draw and measure through a lens that poses were found through."""
+        self._lens = lens
+        self._renderer.look_through(lens)
+
+    def _follow_lens(self, state: CubeState) -> None:
+        """Look through the lens of a state: its focal length may be measured in play."""
+        focal = state.focal_scale * self.intrinsics.matrix[0, 0]
+        if focal != self._lens.matrix[0, 0]:
+            self._see_through(self.intrinsics.lengthen(state.focal_scale, None))
+            self._appearance = AppearanceMeter(self.cube, self._lens, self._measured)
 
     def _begin_to_see(self, cube: CubeModel) -> None:
         """Forget what the pictures have shown so far beside the cube's pose."""
         self._renderer.play(cube)
-        self._appearance = AppearanceMeter(cube, self.intrinsics, self._measured)
+        self._appearance = AppearanceMeter(cube, self._lens, self._measured)
 
     def adjust(self, settings: ScenarioSettings, look: str) -> None:
         """Play on with other settings, as far as the scenario can be adjusted."""
@@ -300,6 +319,7 @@ class Playground:
             self.expect(frame)
         self._tracker_error = ""
         state = replay.state or self.track(frame)
+        self._follow_lens(state)
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
@@ -324,7 +344,7 @@ class Playground:
         hint = self._hint(decision, state.timestamp)
         outcome = replace(decision, command=command, hint=hint)
         self._lap("animation")
-        matrix = self.intrinsics.matrix
+        matrix = self._lens.matrix
         step = Step(
             frame,
             state,
@@ -345,6 +365,11 @@ class Playground:
             step = replace(step, picture=self.draw(step))
         self._lap("drawing")
         return step
+
+    @property
+    def measured_intrinsics(self) -> Intrinsics:
+        """The camera, with its focal length as well as play has told it so far."""
+        return self._tracker.measured_intrinsics
 
     @property
     def lens(self) -> LensEstimate:

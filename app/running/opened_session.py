@@ -13,6 +13,7 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
+from cubeling.app.running.kept_lens import LensStore
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
@@ -82,6 +83,9 @@ class OpenedSession:
     preferences: PreferenceStore
     """How the player likes window and sound."""
 
+    lenses: LensStore
+    """Where the lenses that play has measured are kept."""
+
     monitor: SessionMonitor
     """Collects what the window's panels show."""
 
@@ -110,6 +114,17 @@ class OpenedSession:
         """In a replay, timestamps of the frames in which the cube was opened or closed [s]."""
         return frozenset() if self.replayed is None else self.replayed.openings
 
+    def keep_lens(self) -> Path | None:
+        """Keep the lens of a live camera if play has measured it; return its file, if any."""
+        stated = self.options.intrinsics is not None or self.source.intrinsics is not None
+        if stated or not self.source.live:
+            return None
+        measured = self.playground.measured_intrinsics
+        before = self.lenses.load(self.options.source, self.source.size)
+        if before is not None and (before.matrix == measured.matrix).all():
+            return None
+        return self.lenses.save(self.options.source, measured)
+
     @property
     def keeps_scenario(self) -> bool:
         """Whether scenario, character and camera stay: a recording holds one of each."""
@@ -131,7 +146,9 @@ class OpenedSession:
             cube = cube_for(find_scenario(name), in_view, playground.known_cubes)
             if name == playground.scenario.name and cube is not in_view:
                 return
-            playground.play(scenario_of(self.options, name, cube), cube)
+            scenario = scenario_of(self.options, name, cube)
+            playground.keep_lens()
+            playground.play(scenario, cube)
         except (AppError, AffectError, CharacterError, TrackingError) as error:
             self.screen.notify(str(error))
             return

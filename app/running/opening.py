@@ -13,6 +13,7 @@ from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
+from cubeling.app.running.kept_lens import LensStore
 from cubeling.app.running.opened_session import OpenedSession, scenario_of
 from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.robots import RobotLine, is_real_robot
@@ -112,9 +113,13 @@ def open_session(
         if source is None:
             source = closing.enter_context(open_source(options.source))
         check_start(options, source)
-        intrinsics = intrinsics_for(calibration or source.intrinsics, source.size)
-        context = sound = None
         preferences = preferences or PreferenceStore()
+        lenses = LensStore(preferences)
+        known = calibration or source.intrinsics
+        if known is None and source.live:
+            known = lenses.load(options.source, source.size)
+        intrinsics = intrinsics_for(known, source.size)
+        context = sound = None
         monitor = SessionMonitor(options, FrameTimes(time.perf_counter))
         if screen is None:
             sound = open_sound(options, character, closing)
@@ -181,6 +186,7 @@ def open_session(
             replayed=replayed,
             replay_inputs=replay_inputs,
             preferences=preferences,
+            lenses=lenses,
             monitor=monitor,
             ending=ending,
             first_source=source,

@@ -39,7 +39,7 @@ from cubeling.app.session.encoding import (
 )
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.robot import Closeable
-from cubeling.tracking import Frame, Intrinsics, nanoseconds_of
+from cubeling.tracking import FOCAL_DEVIATION, LENS_RECORD, Frame, Intrinsics, nanoseconds_of
 
 CHUNK_BYTES = 128 * 1024
 """Size at which a chunk is written at the latest [B]: about that of one JPEG picture."""
@@ -109,6 +109,9 @@ class Recorder(Closeable):
 
     def camera(self, intrinsics: Intrinsics, timestamp: float) -> None:
         """Record the camera's calibration."""
+        if intrinsics.focal_deviation is not None:
+            values = {FOCAL_DEVIATION: repr(intrinsics.focal_deviation)}
+            self._submit(partial(self._writer.add_metadata, LENS_RECORD, values))
         message = CameraCalibration(
             frame_id="camera",
             width=intrinsics.size[0],

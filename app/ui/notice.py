@@ -1,5 +1,6 @@
 """Notices for the player: the camera delivers no new frames, or its lens is not as it claims."""
 
+import math
 from dataclasses import dataclass
 
 from cubeling.tracking import Health, Intrinsics, LensEstimate
@@ -33,6 +34,18 @@ def notice(health: Health) -> Notice | None:
     if health.frozen:
         return Notice("The picture is frozen", "Uncover the camera, or plug it in again.")
     return Notice("Camera lost: plug it in again", "The session then continues.")
+
+
+def focal_length(intrinsics: Intrinsics) -> str:
+    """Return the focal length with its standard deviation, and the angle from side to side.
+
+    >>> focal_length(Intrinsics.guess((1280, 720)))
+    '1109 px ± 35 %, 60° wide'
+    """
+    focal, deviation = float(intrinsics.matrix[0, 0]), intrinsics.focal_deviation
+    stated = "" if deviation is None else f" ± {100 * deviation:.2g} %"
+    wide = 2 * math.degrees(math.atan(intrinsics.size[0] / 2 / focal))
+    return f"{focal:.0f} px{stated}, {wide:.0f}° wide"
 
 
 def lens_notice(lens: LensEstimate, intrinsics: Intrinsics) -> str | None:

@@ -21,6 +21,9 @@ MIN_VIEWS = 8
 GOOD_FOCAL_ERROR, MAX_FOCAL_ERROR = 0.005, 0.01
 """Relative uncertainty of the focal length (two standard deviations) to aim at, and to accept."""
 
+LEAST_FOCAL_DEVIATION = 0.002
+"""Standard deviation that is stated of a focal length at least, as a share of it: paper bends."""
+
 MAX_RESIDUAL_RATIO = 3.0
 """A view with more than this times the median residual does not show this target."""
 
@@ -108,6 +111,8 @@ def solve(views: Sequence[View], target: CalibrationTarget) -> tuple[Calibration
         best = with_k3
     intrinsics = camera_vector.to_intrinsics(best.model.camera, target.size)
     spread = np.sqrt(np.diag(best.covariance))[:9]
+    deviation = max(float(spread[0] / intrinsics.matrix[0, 0]), LEAST_FOCAL_DEVIATION)
+    intrinsics = replace(intrinsics, focal_deviation=deviation)
     calibration = Calibration(intrinsics, spread, best.model.plates, best.residual, len(kept))
     return calibration, kept
 

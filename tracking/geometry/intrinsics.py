@@ -2,7 +2,7 @@
 
 import contextlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -14,8 +14,14 @@ from cubeling.files import FileKind, write_whole
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.arrays import Array
 
-GUESSED_FIELD_OF_VIEW = math.radians(60)
-"""Horizontal field of view of a common webcam [rad]."""
+GUESSED_FIELD_OF_VIEW, GUESSED_FOCAL_DEVIATION = math.radians(60), 0.35
+"""Field of view of a common camera along the longer side of its picture [rad], and the standard
+deviation of its focal length as a share of it: phones and webcams have 50° to 100°."""
+
+GUESSED_CENTRE, MAX_CALIBRATED_DEVIATION = 0.008, 0.005
+"""How far the principal point of such a camera is from the middle, one standard deviation as a
+share of the longer side, and the focal deviation above which a lens was not calibrated: `cubeling
+calibrate` accepts none above."""
 
 CAMERA_FILE = FileKind(
     "camera file",
@@ -30,6 +36,10 @@ DISTORTION_MODELS = {4: "plumb_bob", 5: "plumb_bob", 8: "rational_polynomial"}
 """Name in ROS for each number of OpenCV's coefficients, k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
 
 
+DEVIATION_KEY = "focal_deviation"
+"""The key of `Intrinsics.focal_deviation` in the file; ROS ignores it."""
+
+
 @dataclass(frozen=True)
 class Intrinsics:
     """Pinhole and lens distortion of a camera, in OpenCV's model."""
@@ -42,6 +52,10 @@ class Intrinsics:
 
     size: tuple[int, int]
     """Width and height of the images that it holds for [px]."""
+
+    focal_deviation: float | None = None
+    """Standard deviation of the focal lengths, as a share of them; None where it is not stated, as
+    in a calibration by another program."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", np.array(self.matrix, np.float64))
@@ -62,19 +76,31 @@ class Intrinsics:
             return f"the distortion must be 4, 5 or 8 finite numbers, not {len(self.distortion)}"
         if min(self.size) < 1:
             return "width and height must be at least one pixel"
+        if self.focal_deviation is not None and not 0 < self.focal_deviation <= 1:
+            return "the deviation of the focal length must be a share from 0 to 1"
         return ""
 
     @classmethod
     def guess(cls, size: tuple[int, int]) -> Self:
-        """Assume a lens without distortion and with a horizontal field of view of 60°.
+        """Assume a lens without distortion and with 60° along the longer side of the picture.
 
         >>> Intrinsics.guess((1280, 720)).matrix.round(1).tolist()
         [[1108.5, 0.0, 639.5], [0.0, 1108.5, 359.5], [0.0, 0.0, 1.0]]
         """
         width, height = size
-        focal = width / 2 / math.tan(GUESSED_FIELD_OF_VIEW / 2)
+        focal = max(size) / 2 / math.tan(GUESSED_FIELD_OF_VIEW / 2)
         matrix = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
-        return cls(matrix, np.zeros(5), size)
+        return cls(matrix, np.zeros(5), size, GUESSED_FOCAL_DEVIATION)
+
+    @property
+    def centre_deviation(self) -> float:
+        """Standard deviation of the principal point along each axis [px]; 0 where calibrated.
+
+        >>> Intrinsics.guess((1000, 500)).centre_deviation
+        8.0
+        """
+        stated = self.focal_deviation or 0.0
+        return max(self.size) * GUESSED_CENTRE if stated > MAX_CALIBRATED_DEVIATION else 0.0
 
     def undistort(self, points: ArrayLike) -> Array:
         """Move pixels to where the same camera without lens distortion would see them.
@@ -110,7 +136,16 @@ class Intrinsics:
         matrix = scale @ self.matrix
         matrix[0, 2] += (horizontal - 1) / 2  # pixel centres are at integers
         matrix[1, 2] += (vertical - 1) / 2
-        return type(self)(matrix, self.distortion, size)
+        return replace(self, matrix=matrix, size=size)
+
+    def lengthen(self, scale: float, focal_deviation: float | None) -> Self:
+        """Return a camera with focal lengths `scale` times as long, and how sure they are.
+
+        >>> Intrinsics.guess((640, 480)).lengthen(2.0, 0.1).matrix.round(1)[0].tolist()
+        [1108.5, 0.0, 319.5]
+        """
+        matrix = self.matrix * [[scale, scale, 1], [1, scale, 1], [1, 1, 1]]
+        return replace(self, matrix=matrix, focal_deviation=focal_deviation)
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -150,7 +185,12 @@ class Intrinsics:
         if len(matrix) != 9:
             raise TrackingError(f"'camera_matrix' must hold 9 numbers, not {len(matrix)}")
         distortion = _numbers(document, "distortion_coefficients")
-        return cls(matrix.reshape(3, 3), distortion, (width, height))
+        deviation = document.get(DEVIATION_KEY)
+        if deviation is not None and not isinstance(deviation, float):
+            raise TrackingError(
+                f"'{DEVIATION_KEY}' must be a share such as 0.01, not {deviation!r}"
+            )
+        return cls(matrix.reshape(3, 3), distortion, (width, height), deviation)
 
     def save(self, path: str | Path, name: str = "camera") -> None:
         """Write a ROS `camera_info` YAML file, completely or not at all; `load` reads it back.
@@ -177,6 +217,8 @@ class Intrinsics:
             "rectification_matrix": _table(np.eye(3)),
             "projection_matrix": _table(np.hstack([self.matrix, np.zeros((3, 1))])),
         }
+        if self.focal_deviation is not None:
+            document[DEVIATION_KEY] = self.focal_deviation
         import yaml
 
         text = yaml.safe_dump(document, sort_keys=False, default_flow_style=None)

@@ -1,7 +1,9 @@
 """The second and third value of the pipeline: where the cube is, and what the hand does with it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
+
+import numpy as np
 
 from cubeling.tracking.geometry.arrays import Array
 
@@ -45,6 +47,14 @@ class CubeState:
     more than one frame, and goes on; "failed": it ended in an error of the program, see
     `CubeTracker.give_up`.
     """
+
+    focal_scale: float = 1.0
+    """Focal length through which the pose was found, as a multiple of that of the camera's
+    intrinsics: other than 1 where those were guessed, and play has measured it."""
+
+    focal_shift: Array = field(default_factory=lambda: np.zeros(6))
+    """Pose delta by one standard deviation of the focal length, (6,): the part of `covariance` that
+    all frames have in common."""
 
     @property
     def verdict(self) -> str:

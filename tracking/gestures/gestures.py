@@ -86,6 +86,7 @@ class CubeGestures:
         self._turns = TurnCounter()
         self._positions: deque[tuple[float, list[float]]] = deque()
         self._last: tuple[float, Array] | None = None
+        self._focal_scale = 1.0
         self._lifted_since: float | None = None
         self._handled = True
         self._placed_top: str | None = None
@@ -100,6 +101,8 @@ class CubeGestures:
         if not state.visible or pose is None:
             self._controls = before
             return before
+        if state.focal_scale != self._focal_scale:
+            self._look_through(state.focal_scale)
         velocity = self._velocity(now, pose)
         made = [name for name, each in self._detectors.items() if each.update(now, pose, velocity)]
         # Before the position is remembered: `_learn` needs the time since the last pose.
@@ -111,13 +114,27 @@ class CubeGestures:
         self._controls = before if table is None else self._on_table(before, table, pose)
         return self._controls
 
+    def _look_through(self, focal_scale: float) -> None:
+        """Keep the table under the cube where a longer lens shows both farther away."""
+        longer, self._focal_scale = focal_scale / self._focal_scale, focal_scale
+        if self._last is not None:
+            place = self._last[1][:3, 3]
+            self._table_estimator.move(farther(place, longer))
+            # It is the same table: nothing was placed on it.
+            self._table = self._table_estimator.table
+        self._last = None
+        self._stillness = StillnessDetector()
+        self._positions.clear()
+
     def _velocity(self, now: float, pose: Array) -> Array:
         if self._last is None or not 0 < now - self._last[0] <= MAX_GAP_S:
             return np.zeros(6)
         return se3.delta(self._last[1], pose) / (now - self._last[0])
 
     def _learn(self, state: CubeState, pose: Array) -> None:
-        self._stillness.add(state.timestamp, pose, state.covariance)
+        # A wrong focal length moves the poses of all frames alike, so it hides no tremor.
+        noise = np.diag(state.covariance) - state.focal_shift**2
+        self._stillness.add(state.timestamp, pose, noise)
         if self._stillness.still:
             elapsed = state.timestamp - self._last[0] if self._last else 0.0
             self._table_estimator.learn(pose, self._stillness.firm, min(elapsed, MAX_GAP_S))
@@ -208,6 +225,20 @@ class CubeGestures:
 
 def _angle(cosine: float) -> float:
     return math.acos(min(max(cosine, -1.0), 1.0))
+
+
+def farther(place: Array, longer: float) -> Array:
+    """Return how things about a place, (3,) [m], move where a lens is `longer` than was assumed.
+
+    They look alike in the picture, and are as large: they are farther away, and turned with the
+    line of sight to them. A transform, (4, 4).
+    """
+    there = place * [1, 1, longer]
+    before, after = place / np.linalg.norm(place), there / np.linalg.norm(there)
+    axis = np.cross(before, after)
+    sine = float(np.linalg.norm(axis))
+    turn = se3.rotation(axis * (math.asin(min(sine, 1.0)) / sine if sine > 1e-9 else 0.0))
+    return se3.pose(turn, there - turn @ place)
 
 
 def wrap_angle(angle: float) -> float:

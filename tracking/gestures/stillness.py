@@ -15,7 +15,7 @@ MAX_SPEED = (0.02, 0.2)
 """Slower than this is still [m/s, rad/s]."""
 
 MAX_TREMOR = (2.5e-4, 3.5e-3)
-"""Standard deviation of a cube on a table, apart from the covariance of its pose [m, rad]. A hand
+"""Standard deviation of a cube on a table, apart from that of its pose [m, rad]. A hand
 in the air trembles by 0.3 to 1 mm at 8 to 12 Hz (physiological tremor)."""
 
 
@@ -23,7 +23,7 @@ in the air trembles by 0.3 to 1 mm at 8 to 12 Hz (physiological tremor)."""
 class _Sample:
     timestamp: float
     camera_from_cube: Array
-    covariance: Array
+    noise: Array
 
 
 class StillnessDetector:
@@ -33,12 +33,12 @@ class StillnessDetector:
         self._samples: deque[_Sample] = deque()
         self._deltas: Array | None = None
 
-    def add(self, timestamp: float, camera_from_cube: Array, covariance: Array) -> None:
-        """Add a pose, and drop those that are older than the window."""
+    def add(self, timestamp: float, camera_from_cube: Array, noise: Array) -> None:
+        """Add a pose with the variances of its noise, (6,), and drop those that are too old."""
         # Unseen for a whole window the cube may have been anywhere.
         if self._samples and timestamp - self._samples[-1].timestamp > WINDOW_S:
             self._samples.clear()
-        self._samples.append(_Sample(timestamp, camera_from_cube, covariance))
+        self._samples.append(_Sample(timestamp, camera_from_cube, noise))
         # One sample older than the window stays, so that the window is always covered.
         while len(self._samples) > 2 and timestamp - self._samples[1].timestamp >= WINDOW_S - 1e-9:
             self._samples.popleft()
@@ -58,7 +58,7 @@ class StillnessDetector:
         if self._deltas is None or not self.still:
             return False
         variance = self._deltas.var(axis=0).reshape(2, 3).sum(axis=1)
-        expected = np.mean([np.diag(sample.covariance) for sample in self._samples], axis=0)
+        expected = np.mean([sample.noise for sample in self._samples], axis=0)
         # Twice the standard deviation that the tracker claims: its noise is no tremor of a hand.
         allowed = np.square(MAX_TREMOR) + 4 * expected.reshape(2, 3).sum(axis=1)
         return bool((variance < allowed).all())

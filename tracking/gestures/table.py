@@ -43,6 +43,10 @@ NEXT_FIRM_S, NEXT_FIRM_AFTER_PROVISIONAL_S = 1.5, 0.3
 """How long firm rests last before they replace a table, and a provisional one."""
 
 
+MOVED_DOUBT = 5.0
+"""How much less sure a table is that another focal length has moved, than one rest."""
+
+
 @dataclass(frozen=True)
 class RestingFoot:
     """The foot of a cube at rest, in the camera frame."""
@@ -84,14 +88,16 @@ class TablePlane:
     """A plane that every place of rest improves, by recursive least squares.
 
     It is the height above its first estimate, (x, z) ↦ d + a·x + b·z. Rests measure it and slopes.
+    `doubt` is the error of the first estimate as a multiple of that of a rest.
     """
 
-    def __init__(self, rest: RestingFoot) -> None:
+    def __init__(self, rest: RestingFoot, doubt: float = 1.0) -> None:
         self._start = _frame(rest.foot, rest.up)
         self._plane = np.zeros(3)
-        self._information = np.diag(1 / REST_SIGMAS**2)
+        self._information = np.diag(1 / (doubt * REST_SIGMAS) ** 2)
         self._place = rest.foot
-        self._rest_time = SETTLING_TIME_S
+        # What is less sure than a rest is improved by one at the same place.
+        self._rest_time = SETTLING_TIME_S if doubt == 1.0 else 0.0
         self.camera_from_table = self._start
 
     def learn(self, rest: RestingFoot, seconds: float) -> None:
@@ -146,6 +152,14 @@ class TableEstimator:
         self._alternative: TablePlane | None = None
         self._firm_s = 0.0
         self._rest_s = 0.0
+
+    def move(self, after_from_before: Array) -> None:
+        """Take the table to another camera frame, (4, 4); the next firm rests settle it anew."""
+        self._drop_alternative()
+        if self.table is not None:
+            frame = after_from_before @ self.table.camera_from_table
+            foot = RestingFoot(frame[:3, 3], frame[:3, 1])
+            self.table, self._provisional = TablePlane(foot, MOVED_DOUBT), True
 
     def learn(self, camera_from_cube: Array, firm: bool, seconds: float) -> None:
         """Add one frame in which the cube keeps still, `seconds` after the last such frame."""

@@ -96,6 +96,13 @@ class LensEstimator:
             return float(np.hypot(found.k1, found.deviation))
         return CLAIMED_K1 if self._projection.claims_no_distortion else MEASURED_K1
 
+    def look_through(self, projection: Projection) -> None:
+        """Go on with another focal length, which must be nearly the same."""
+        change = np.log(projection.matrix[0, 0] / self._projection.matrix[0, 0])
+        # What was measured of the focal length was measured from the one before.
+        self._score = self._score - self._information[:, 1] * change
+        self._projection = projection
+
     def learn(self, camera_from_cube: Array, edges: FittedEdges) -> None:
         """Learn from the edges of a trusted pose, (4, 4), that differs from all before."""
         face = edges.profiles.face[edges.fit.strong]

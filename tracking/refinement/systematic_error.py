@@ -25,9 +25,14 @@ not a round lens alone."""
 COMMON_SHIFT_PX = 0.15
 """Displacement of the whole cube in the image, along each axis, one standard deviation."""
 
-MEASURED_FOCAL, CLAIMED_FOCAL = 0.002, 0.005
-"""Standard deviation of the focal length, as a share of it, of a lens that was measured, and of one
-that claims no distortion."""
+UNSTATED_FOCAL = 0.016
+"""Standard deviation of the focal length, as a share of it, of a lens whose file does not state it:
+those of makers of cameras and of other programs are off by 2 to 3 % (`make bench-photographs`)."""
+
+MAX_LINEAR_FOCAL, FOCAL_CURVATURE = 0.05, 0.15
+"""Standard deviation of a focal length, as a share, up to which a pose moves in proportion to it,
+and by how much a larger one moves it besides, by its square: turns [rad], and shifts as a multiple
+of half a marker (`test_measured_lens`)."""
 
 MEASURED_K1, CLAIMED_K1 = 0.005, 0.1
 """Error of k1 of a lens that was measured, and of one that claims no distortion: hardly any has
@@ -41,14 +46,18 @@ class SystematicError:
         self._projection = projection
         self._corners = {face.name: face.corners for face in cube.faces}
         self._half = cube.marker_size / 2
-        unknown = projection.claims_no_distortion
-        self._focal = CLAIMED_FOCAL if unknown else MEASURED_FOCAL
+        stated = projection.intrinsics.focal_deviation
+        self._centre = projection.intrinsics.centre_deviation
+        self._focal = UNSTATED_FOCAL if stated is None else stated
 
     def covariance(
         self, camera_from_cube: Array, faces: tuple[str, ...], k1_error: float, blur: float = 0.0
     ) -> tuple[Array, Array]:
-        """Covariances of a pose delta, (6, 6): by the corners of `faces`, and by the lens.
+        """Covariance of a pose delta by the corners of `faces`, (6, 6), and how the lens moves it.
 
+        The latter are the pose deltas by one standard deviation of k1, of the focal length and of
+        the principal point, and those by which a guessed focal length moves the pose besides along
+        and about each axis, (6, 10).
         `k1_error` is how far the radial distortion is off, and `blur` the blur of the image [px],
         one standard deviation each. Where the lens was never measured, how k1 stretches the cube is
         solved for with the pose, and its error is among those by the corners.
@@ -78,7 +87,10 @@ class SystematicError:
         # Where a lens with a larger k1, and with a longer focal length, shows the corners.
         moved = focal * radial_bend(middle) + bends * (not solved)
         modes = np.stack([moved, focal * flat], axis=2).reshape(-1, 2)
-        moves = inverse @ (rows.T @ (modes * (k1_error, self._focal))) / error**2
-        return np.asarray(inverse[:, :6] + shift, np.float64), np.asarray(
-            moves @ moves.T, np.float64
-        )
+        centre = np.tile(np.eye(2), (len(points), 1))
+        modes = np.concatenate([modes * (k1_error, self._focal), centre * self._centre], axis=1)
+        moves = inverse @ (rows.T @ modes) / error**2
+        curved = FOCAL_CURVATURE * self._focal**2 if self._focal > MAX_LINEAR_FOCAL else 0.0
+        besides = curved * np.diag([*[self._half] * 3, 1.0, 1.0, 1.0])
+        moves = np.concatenate([moves, besides], axis=1)
+        return np.asarray(inverse[:, :6] + shift, np.float64), np.asarray(moves, np.float64)

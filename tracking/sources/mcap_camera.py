@@ -10,7 +10,7 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from google.protobuf.message import DecodeError
 from mcap.exceptions import EndOfFile, InvalidMagic, RecordLengthLimitExceeded
 from mcap.reader import make_reader
-from mcap.records import Channel, McapRecord, Message, Schema
+from mcap.records import Channel, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import MAGIC_SIZE, StreamReader
 
 from cubeling.tracking.errors import TrackingError
@@ -20,6 +20,10 @@ from cubeling.tracking.sources.decoding import BrokenFileError, EncodedImage
 
 IMAGE_TOPIC = "/camera/image"
 CALIBRATION_TOPIC = "/camera/calibration"
+
+LENS_RECORD, FOCAL_DEVIATION = "cubeling lens", "focal_deviation"
+"""Name of the metadata before the calibration, and their key: `Intrinsics.focal_deviation`, which
+Foxglove's calibration has no field for."""
 
 IMAGE_SCHEMAS: dict[str, type[CompressedImage] | type[CompressedVideo]] = {
     "foxglove.CompressedImage": CompressedImage,
@@ -59,18 +63,21 @@ class CameraChannels:
         """
         schemas: dict[int, Schema] = {}
         channels: dict[int, Channel] = {}
+        deviation = ""
         for record in _records(self._file):
             if isinstance(record, Schema):
                 schemas[record.id] = record
             elif isinstance(record, Channel):
                 channels[record.id] = record
+            elif isinstance(record, Metadata) and record.name == LENS_RECORD:
+                deviation = record.metadata.get(FOCAL_DEVIATION, "")
             elif isinstance(record, Message) and record.channel_id in channels:
                 channel = channels[record.channel_id]
                 if channel.topic == IMAGE_TOPIC:
                     schema = schemas.get(channel.schema_id)
                     yield _image(record, schema.name if schema else "no schema")
                 elif channel.topic == CALIBRATION_TOPIC:
-                    self.intrinsics = _intrinsics(record)
+                    self.intrinsics = _intrinsics(record, deviation)
 
 
 class _ExactReads:
@@ -125,13 +132,14 @@ def _image(message: Message, schema: str) -> EncodedImage:
     return EncodedImage(image.data, ENCODING_OF_FORMAT[image.format], seconds_of(time))
 
 
-def _intrinsics(message: Message) -> Intrinsics | None:
+def _intrinsics(message: Message, deviation: str) -> Intrinsics | None:
     try:
         calibration = CameraCalibration.FromString(message.data)
         if not any(calibration.K):  # Foxglove: all zeros mean an uncalibrated camera
             return None
         matrix = np.array(calibration.K).reshape(3, 3)
         size = (calibration.width, calibration.height)
-        return Intrinsics(matrix, np.array(calibration.D or [0.0] * 5), size)
+        stated = float(deviation) if deviation else None
+        return Intrinsics(matrix, np.array(calibration.D or [0.0] * 5), size, stated)
     except (DecodeError, ValueError, TrackingError) as error:
         raise BrokenFileError(f"has a calibration that cannot be used ({error})") from error

@@ -27,6 +27,9 @@ EYE_M = np.array([0.0, 0.37, 0.53])
 LOOK_AT_M = np.array([0.0, 0.05, -0.02])
 """Point that it looks at, in the table frame."""
 
+FOCAL_DEVIATION = 0.002
+"""What is stated of its focal length, as a share of it: as surely as a calibration finds it."""
+
 
 class SyntheticSource(FrameSource):
     """A source that renders a cube on a desk, so that the true poses are known.
@@ -128,7 +131,7 @@ def webcam(options: SyntheticOptions) -> Intrinsics:
         ]
     )
     lens = options.distortion * np.array([-0.11, 0.055, 0.0006, -0.0004, -0.012])
-    return Intrinsics(matrix, lens, (options.width, options.height))
+    return Intrinsics(matrix, lens, (options.width, options.height), FOCAL_DEVIATION)
 
 
 def look_at(eye: Array, target: Array) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from cubeling.tracking.cube.model import CubeModel
-from cubeling.tracking.detection.markers import MarkerDetector
+from cubeling.tracking.detection.markers import MarkerDetector, markers_of
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.intrinsics import Intrinsics
@@ -15,12 +15,14 @@ from cubeling.tracking.refinement.blur_search import BlurSearch
 from cubeling.tracking.refinement.camera_model import CameraModelEstimator
 from cubeling.tracking.refinement.cell_search import CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
+from cubeling.tracking.refinement.face_corners import detected_faces, fitted_faces
 from cubeling.tracking.refinement.lens_estimate import LensEstimate, LensEstimator
 from cubeling.tracking.refinement.systematic_error import SystematicError
 from cubeling.tracking.single_thread import on_one_thread
 from cubeling.tracking.tracker.frame_markers import FrameMarkers
 from cubeling.tracking.tracker.global_search import GlobalDetector, Search
 from cubeling.tracking.tracker.local_search import LocalMatch, LocalTracker
+from cubeling.tracking.tracker.measured_lens import MeasuredLens, track_through
 from cubeling.tracking.tracker.prediction import Track, TrackedPose
 from cubeling.tracking.tracker.rest import Rest
 from cubeling.tracking.tracker.verdict import (
@@ -33,6 +35,10 @@ from cubeling.tracking.tracker.verdict import (
 
 MAX_THOROUGH_FRAMES, THOROUGH_INTERVAL = 30, 5
 """Frames without the cube in which partly hidden markers are detected, then the interval."""
+
+MAX_KEPT_CHANGE = 0.05
+"""Change of the logarithm of the focal length up to which what was learned of the distortion is
+kept: through another lens than that, the faces were stretched by more than it explains."""
 
 
 class CubeTracker:
@@ -55,21 +61,33 @@ class CubeTracker:
 
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
         self.cube = cube
+        self._detectors = {cube.dictionary: MarkerDetector(cube.dictionary)}
+        self._camera = CameraModelEstimator()
+        self._past = Past()
+        self._measured = MeasuredLens(cube, intrinsics)
+        self._look_through(intrinsics)
+        self._lens = LensEstimator(cube, self._projection)
+
+    def _look_through(self, intrinsics: Intrinsics) -> None:
+        """Take another lens; what depends on none, and the track, is kept."""
+        cube = self.cube
         self.intrinsics = intrinsics
-        projection = Projection(intrinsics)
+        """The camera; its focal length is measured in play where it was guessed."""
+        self._projection = projection = Projection(intrinsics)
         edges = EdgeSearch(cube, projection)
         blur = BlurSearch(cube, projection, edges)
         cells = CellSearch(cube, projection)
         self._local_tracker = LocalTracker(cube, projection, edges, cells, blur)
         self._followed_pose_judge = FollowedPoseJudge(cube, projection, edges, cells)
         self._global_detector = GlobalDetector(cube, projection, edges, cells, blur)
-        self._detectors = {cube.dictionary: MarkerDetector(cube.dictionary)}
         self._systematic_error = SystematicError(cube, projection)
-        self._camera = CameraModelEstimator()
-        self._lens = LensEstimator(cube, projection)
-        self._past = Past()
         self._rest = Rest()
         self._search: Search | None = None
+
+    @property
+    def measured_intrinsics(self) -> Intrinsics:
+        """The camera, with its focal length as well as it is known after this frame."""
+        return self._measured.best
 
     @property
     def lens(self) -> LensEstimate:
@@ -96,6 +114,7 @@ class CubeTracker:
             The size of the frame is not that of the intrinsics.
         """
         self._check_size(frame)
+        self._take_better_lens()
         image, now, past = frame.image, frame.timestamp, self._past
 
         # Predict where the cube should be, by its last poses.
@@ -110,6 +129,8 @@ class CubeTracker:
 
         if match.candidate is not None:
             self._search = None
+            if not self._measured.trusts_edges:
+                self._learn_lens(markers or FrameMarkers(frame, self._detectors))
             # Judge the pose: a single face may tilt either way.
             verdict = self._followed_pose_judge.judge(match.candidate, image, tone, past)
         else:
@@ -121,6 +142,8 @@ class CubeTracker:
             expected = prediction.camera_from_cube if prediction else None
             search = self._global_detector.search(markers, expected, tone, thorough, self._search)
             self._search = None if search.decided else search
+            if not search.flat:
+                self._learn_lens(markers)
             if search.flat or not search.decided:
                 self._past = past
                 return self._predict(now, "flat" if search.flat else "searching")
@@ -135,17 +158,20 @@ class CubeTracker:
         if found is None or verdict.refused:
             return self._predict(now, verdict.refused)
         pose, noise = found.camera_from_cube, found.covariance
-        by_corners, by_lens = self._systematic_error.covariance(
+        by_corners, lens_shifts = self._systematic_error.covariance(
             pose, found.faces, self._lens.k1_error, found.blur
         )
         if is_uncertain(noise + by_corners):
             return self._predict(now, "unsure")
         if found.edges is not None:
             self._lens.learn(pose, found.edges)
+            if self._measured.wants(pose):
+                lens = self._projection
+                self._measured.learn(fitted_faces(self.cube, lens, pose, found.faces, found.edges))
         velocity, acceleration = track.motion(pose, noise, now)
         if found.edges is not None:
             self._camera.readout.learn(found.edges, velocity, self.intrinsics.size[1])
-        systematic = by_corners + by_lens
+        systematic = by_corners + lens_shifts @ lens_shifts.T
         track = track.add(TrackedPose(pose, velocity, noise, now, acceleration, systematic))
         self._past = replace(verdict.past, track=track, jump=None, frames_lost=0)
         # State the mean of the poses while the cube rests.
@@ -160,7 +186,31 @@ class CubeTracker:
             faces=found.faces,
             reprojection_error=found.error,
             timestamp=now,
+            focal_scale=self._measured.scale,
+            focal_shift=lens_shifts[:, 1],
         )
+
+    def _learn_lens(self, markers: FrameMarkers) -> None:
+        """Learn the focal length from the corners of markers, unless it is known.
+
+        Whether or not a pose is trusted: a wrong lens is a reason why none is.
+        """
+        if self._measured.learns:
+            seen = markers.read(self.cube.dictionary, "first window")
+            self._measured.learn(detected_faces(markers_of(self.cube, seen)))
+
+    def _take_better_lens(self) -> None:
+        """Look through the lens that play has measured, if it differs from the one in use."""
+        before, better = self.intrinsics, self._measured.take_better()
+        if better is not None:
+            self._look_through(better)
+            change = np.log(better.matrix[0, 0] / before.matrix[0, 0])
+            if abs(change) < MAX_KEPT_CHANGE:
+                self._lens.look_through(self._projection)
+            else:
+                self._lens = LensEstimator(self.cube, self._projection)
+            track = track_through(self._past.track, self.cube, before, better)
+            self._past = replace(self._past, track=track, jump=None)
 
     def _predict(self, now: float, refused: str) -> CubeState:
         """Return the state of a cube that is not seen, with a covariance that grows."""
@@ -178,6 +228,7 @@ class CubeTracker:
             reprojection_error=np.nan,
             timestamp=now,
             refused=refused,
+            focal_scale=self._measured.scale,
         )
 
     def _await(self, verdict: Verdict, now: float) -> CubeState:

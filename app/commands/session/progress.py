@@ -21,9 +21,9 @@ from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.summary import Summary
 from cubeling.app.session import SessionFile, SessionOptions, session_info
-from cubeling.app.ui.notice import lens_notice
+from cubeling.app.ui.notice import focal_length, lens_notice
 from cubeling.app.ui.playback.status import EndCard
-from cubeling.tracking import FrameSource
+from cubeling.tracking import FrameSource, Intrinsics
 
 if TYPE_CHECKING:
     from cubeling.app.running.players import PlayerPublisher
@@ -62,10 +62,8 @@ def play_session(
         ) as session:
             at_end.callback(report_kept, session, console)
             if options.intrinsics is None and session.source.intrinsics is None:
-                console.print(
-                    "[dim]The camera is not calibrated: a lens of 60° is guessed. "
-                    "[cyan]cubeling calibrate[/] finds the true one in 20 s.[/]"
-                )
+                _say_lens(session, console)
+                at_end.callback(_keep_lens, session, console)
             summary = run_with_progress(session, console, title)
         console.print(summary)
         if options.output is not None:
@@ -87,6 +85,37 @@ def _keep_preferences(preferences: PreferenceStore, console: Console) -> Iterato
         preferences.save()
         if preferences.problem != reported:
             console.print(f"[dim]{escape(str(preferences.problem))}[/]", soft_wrap=True)
+
+
+def _say_lens(session: OpenedSession, console: Console) -> None:
+    """Print through which lens a camera that was not calibrated is looked through."""
+    lens = session.playground.intrinsics
+    words = "a lens of 60° is guessed, and measured while you turn the cube"
+    if lens.focal_deviation != Intrinsics.guess(lens.size).focal_deviation:
+        words = f"its lens is the one that play has measured, {focal_length(lens)}"
+    console.print(
+        f"[dim]The camera is not calibrated: {words}. "
+        "[cyan]cubeling calibrate[/] finds the true one in 20 s.[/]"
+    )
+    _say_lens_problem(session, console)
+
+
+def _say_lens_problem(session: OpenedSession, console: Console) -> None:
+    if session.lenses.problem:
+        console.print(f"[dim]{escape(session.lenses.problem)}[/]", soft_wrap=True)
+        session.lenses.problem = ""
+
+
+def _keep_lens(session: OpenedSession, console: Console) -> None:
+    """Keep the lens that play has measured, and print where."""
+    path = session.keep_lens()
+    if path is not None:
+        lens = focal_length(session.playground.measured_intrinsics)
+        console.print(
+            f"[dim]The lens of this camera, {lens}, is kept in {escape(str(path))}[/]",
+            soft_wrap=True,
+        )
+    _say_lens_problem(session, console)
 
 
 def report_output(path: Path, summary: Summary, console: Console) -> None:
@@ -245,7 +274,7 @@ class _LensLine:
     def __call__(self, step: Step) -> None:
         if self._said:
             return
-        words = lens_notice(self._playground.lens, self._playground.intrinsics)
+        words = lens_notice(self._playground.lens, self._playground.measured_intrinsics)
         if words is not None:
             self._console.print(words)
             self._said = True

@@ -93,7 +93,9 @@ def _exchange_camera(
 ) -> None:
     asked = session.asked
     path = asked.intrinsics if uri == asked.source else None
+    session.keep_lens()
     calibration = camera.intrinsics if path is None else Intrinsics.load(path)
+    calibration = calibration or session.lenses.load(uri, camera.size)
     session.playground.look_through(intrinsics_for(calibration, camera.size))
     session.source.close()
     session.source = camera

@@ -113,7 +113,9 @@ class PlayerControls:
         try:
             folder = options.folder or default_folder()
             path = dated_file(folder, options.scenario, ".mcap", datetime.now())
-            # A replay begins with the first recorded frame, so the scenario does so too.
+            # A replay begins with the first recorded frame, so the scenario does so too; what is
+            # known of the lens by then is its calibration.
+            session.playground.keep_lens()
             session.restart()
             session.record(path)
         except AppError as error:

@@ -83,12 +83,12 @@ class SessionMonitor:
         self.quality = FULL.name
         """How finely characters are drawn."""
         self.intrinsics: Intrinsics | None = None
-        """Of the camera; None before the first step."""
+        """Of the camera, as well as play has told them; None before the first step."""
 
     def update(self, step: Step, robot: RobotView, playground: "Playground") -> None:
         """Take what a frame gave; who has the session keeps the other attributes up to date."""
         self.step, self.robot = step, robot
-        self.lens, self.intrinsics = playground.lens, playground.intrinsics
+        self.lens, self.intrinsics = playground.lens, playground.measured_intrinsics
         self.quality = playground.quality.name
         now, state, feels = step.frame.timestamp, step.state, step.emotion.emotion
         shown = robot.shown

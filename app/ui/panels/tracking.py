@@ -3,11 +3,11 @@
 import numpy as np
 from rich.text import Text
 
-from cubeling.app.ui.notice import lens_notice
+from cubeling.app.ui.notice import focal_length, lens_notice
 from cubeling.app.ui.palette import ACTION_COLORS
 from cubeling.app.ui.panels.content import Fact, Note, Panel, Plot, PlotCurve, Tone, Widget
 from cubeling.app.ui.panels.monitor import TRACKING_SPAN_S, SessionMonitor
-from cubeling.tracking import CubeState
+from cubeling.tracking import CubeState, Intrinsics
 
 REFUSALS = {
     "ambiguous": "one face may lean either way",
@@ -29,6 +29,10 @@ MAX_RESIDUAL_PX = 2.0
 
 GOOD_SHARE, FAIR_SHARE = 0.95, 0.7
 """Shares of frames with the cube that count as good and as fair."""
+
+
+MAX_GOOD_DEVIATION = 0.03
+"""Standard deviation of a focal length, as a share, above which depth is still a guess."""
 
 
 def stated_error(state: CubeState) -> tuple[float, float]:
@@ -75,10 +79,17 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
         ),
     ]
     if monitor.intrinsics is not None:
+        widgets.insert(5, _lens(monitor.intrinsics))
         words = lens_notice(monitor.lens, monitor.intrinsics)
         if words is not None:
             widgets.append(Note(Text.from_markup(words).plain, "warning"))
     return tuple(widgets)
+
+
+def _lens(intrinsics: Intrinsics) -> Fact:
+    deviation = intrinsics.focal_deviation
+    guessed = deviation is not None and deviation > MAX_GOOD_DEVIATION
+    return Fact("Lens", focal_length(intrinsics), "warning" if guessed else "plain")
 
 
 def _verdict(state: CubeState) -> Fact:

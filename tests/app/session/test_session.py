@@ -99,6 +99,17 @@ def test_a_session_describes_itself(recorded):
     assert session_parts.events(path)[0] == (0.0, "started")
 
 
+def test_a_replay_begins_with_the_same_doubt_of_the_lens(recorded):
+    """So it learns the focal length from the same frames as the session did."""
+    from cubeling.tracking import open_source
+
+    with open_source(str(recorded("jpeg")[0])) as source:
+        guess = Intrinsics.guess(SIZE)
+        assert source.intrinsics is not None
+        assert source.intrinsics.focal_deviation == guess.focal_deviation
+        np.testing.assert_array_equal(source.intrinsics.matrix, guess.matrix)
+
+
 def test_a_session_says_the_version_of_its_format(recorded):
     path, _ = recorded("jpeg", count=4)
     with SessionFile(path) as session:

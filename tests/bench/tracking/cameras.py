@@ -45,6 +45,21 @@ The sensor's curve brightens the middle of a blurred edge, so white grows over b
 focus, and by 0.41 px at 0.2 m.
 """
 
+PHONE_LENS = LensModel(
+    np.array([[739.6, 0.0, 242.1], [0.0, 738.7, 424.0], [0.0, 0.0, 1.0]]),
+    np.zeros(5),
+    (480, 854),
+)
+"""An upright phone, 60° from top to bottom, which bends nothing."""
+
+WIDE_ANGLE_LENS = LensModel(
+    np.array([[402.9, 0.0, 481.8], [0.0, 402.4, 267.1], [0.0, 0.0, 1.0]]),
+    np.zeros(5),
+    (960, 540),
+)
+"""100° from left to right; the camera itself takes out what its lens bends."""
+
 WIDE = Camera(LENS)
+PHONE, WIDE_ANGLE = Camera(PHONE_LENS), Camera(WIDE_ANGLE_LENS)
 WEBCAM = Camera(WEBCAM_LENS, Sensor(electrons=3000.0, quality=85))
 WEBCAM_HALF = replace(WEBCAM, sensor=replace(WEBCAM.sensor, halved=True))

@@ -22,7 +22,8 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
+from cubeling.tracking import CubeModel, CubeState, CubeTracker, Frame
+from tests.bench.tracking.ours import told_camera
 from tests.bench.tracking.scoring import CHI2_95_PERCENT, MAX_RECALL_ERROR, MIN_WRONG_ERROR, errors
 from tests.bench.tracking.sequences import NAMES, Sequence, sequence
 from tests.bench.tracking.table import share
@@ -51,7 +52,7 @@ def plan(names: tuple[str, ...], frames: int, length: int, seed: int) -> Iterato
 
 def track(drawn: Sequence) -> Iterator[tuple[int, CubeState]]:
     """Track one sequence; with a new tracker for each frame if the poses are independent."""
-    camera = Intrinsics(drawn.told.matrix, drawn.told.distortion, drawn.size)
+    camera = told_camera(drawn.told)
     cube = CubeModel.load(drawn.cube)
     tracker = CubeTracker(cube, camera)
     for index in range(drawn.count):

@@ -26,7 +26,7 @@ class Sequence:
     """Pictures of a moving cube, and the truth."""
 
     name: str
-    """One of `NAMES`."""
+    """One of `NAMES`, or that of another plan."""
 
     seed: int
     """The same seed gives the same bytes."""
@@ -117,7 +117,11 @@ def sequence(name: str, seed: int = 1, count: int | None = None) -> Sequence:
     count
         Frames; None for as many as the sequence usually has.
     """
-    plan = SEQUENCE_PLANS[name]
+    return draw(SEQUENCE_PLANS[name], name, seed, count)
+
+
+def draw(plan: SequencePlan, name: str, seed: int, count: int | None = None) -> Sequence:
+    """Return the sequence of a plan, which need not be one of `NAMES`; see `sequence`."""
     count = plan.count if count is None else count
     key = zlib.crc32(name.encode())
     random = np.random.default_rng((seed, key))

@@ -61,6 +61,22 @@ def test_the_guess_has_a_field_of_view_of_sixty_degrees():
     assert right - left == pytest.approx(60)
 
 
+def test_a_guess_is_60_degrees_along_the_longer_side():
+    upright = Intrinsics.guess((480, 854))
+    assert upright.matrix[0, 0] == pytest.approx(854 / 2 / np.tan(np.radians(30)))
+    assert upright.focal_deviation == 0.35
+
+
+def test_a_file_keeps_how_sure_the_focal_length_is(tmp_path):
+    path = tmp_path / "camera.yaml"
+    for deviation in (0.012, None):
+        Intrinsics.guess((640, 480)).lengthen(1.5, deviation).save(path)
+        assert Intrinsics.load(path).focal_deviation == deviation
+    path.write_text(path.read_text() + "focal_deviation: wide\n")
+    with pytest.raises(TrackingError, match="'focal_deviation' must be a share such as"):
+        Intrinsics.load(path)
+
+
 @given(arrays(np.float64, (7, 2), elements=st.floats(-0.3, 0.3)))
 def test_undistorted_points_are_those_of_the_pinhole(rays):
     matrix = np.array([[900.0, 0, 639.5], [0, 905, 359.5], [0, 0, 1]])

@@ -42,6 +42,7 @@ class Desk:
         self.gestures = CubeGestures(CubeModel.load("companion"))
         self.generator = np.random.default_rng(seed)
         self.time = 0.0
+        self.focal_scale, self.focal_shift = 1.0, np.zeros(6)
 
     def rest(
         self, table_from_cube: Array, seconds: float, tremor: float = 0.0
@@ -55,7 +56,16 @@ class Desk:
             noise = self.generator.normal(0, 1, 6) * NOISE
             pose = se3.apply_delta(self.camera @ table_from_cube, noise + shake)
             state = CubeState(
-                True, pose, np.zeros(6), np.diag(NOISE**2), "markers", ("top",), 0.1, self.time
+                visible=True,
+                camera_from_cube=pose,
+                velocity=np.zeros(6),
+                covariance=np.diag(NOISE**2) + np.outer(self.focal_shift, self.focal_shift),
+                source="markers",
+                faces=("top",),
+                reprojection_error=0.1,
+                timestamp=self.time,
+                focal_scale=self.focal_scale,
+                focal_shift=self.focal_shift,
             )
             seen.append(self.gestures.update(state))
             self.time += 1 / RATE
@@ -158,3 +168,30 @@ def test_a_side_that_faces_away_is_never_up() -> None:
     away = se3.pose(np.diag([1.0, -1.0, -1.0]), np.array([0, 0, 0.5]))
     rest = rest_of(away, SideDirections(box_sides(EDGE, EDGE, EDGE)))
     assert rest is None or rest.up[2] < 0.2
+
+
+def test_the_table_stays_under_the_cube_through_a_longer_lens() -> None:
+    """The cube looks alike, and is farther away: it was not lifted, and is not placed again."""
+    desk = Desk(camera(35))
+    before = desk.rest(at(turn_deg=30), 1.0)[-1]
+    longer = 1.6
+    desk.camera = desk.camera.copy()
+    desk.camera[2, 3] += (longer - 1) * (desk.camera @ at())[2, 3]
+    desk.focal_scale = longer
+    seen = desk.rest(at(turn_deg=30), 1.0)
+    assert {(each.lifted, each.placements, each.top_face) for each in seen} == {(False, 1, "top")}
+    assert all(each.turns == pytest.approx(before.turns, abs=0.01) for each in seen)
+    height, tilt = desk.error(seen[0])
+    assert height < 0.002
+    assert tilt < np.deg2rad(1.5)
+    height, tilt = desk.error(seen[-1])
+    assert height < 5e-4
+    assert tilt < np.deg2rad(0.3)
+
+
+def test_doubt_of_the_lens_hides_no_tremor() -> None:
+    """A wrong focal length shifts all poses alike, so a hand in the air is still no table."""
+    desk = Desk(camera(35))
+    desk.focal_shift = np.array([0, 0, 0.15, 0.02, 0, 0])
+    assert desk.rest(at(), 0.8, tremor=0.0008)[-1].camera_from_table is None
+    assert desk.rest(at(x=0.1), 0.8)[-1].camera_from_table is not None

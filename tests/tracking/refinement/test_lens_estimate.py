@@ -109,5 +109,8 @@ def test_what_was_measured_replaces_what_is_assumed_of_a_lens() -> None:
 
 def test_a_lens_that_is_known_leaves_less_doubt_of_a_pose() -> None:
     error, pose = SystematicError(CUBE, Projection(CAMERA)), held(at=(0.1, 0.05, 0.4))
-    before, after = (np.add(*error.covariance(pose, ("front", "top"), k1)) for k1 in (0.1, 0.02))
+    before, after = (
+        corners + moves @ moves.T
+        for corners, moves in (error.covariance(pose, ("front", "top"), k1) for k1 in (0.1, 0.02))
+    )
     assert np.trace(after[:2, :2]) < np.trace(before[:2, :2]) / 2

@@ -14,11 +14,10 @@ from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.systematic_error import (
-    CLAIMED_FOCAL,
     COMMON_SHIFT_PX,
     CORNER_ERROR_M,
     CORNER_ERROR_PX,
-    MEASURED_FOCAL,
+    UNSTATED_FOCAL,
     SystematicError,
 )
 from tests.examples import examples, some
@@ -28,7 +27,12 @@ Array = NDArray[np.float64]
 Faces = tuple[str, ...]
 
 CUBE = CubeModel.load("locomotion")
-MEASURED = replace(CAMERA, distortion=np.array([-0.1, 0.05, 0.001, -0.001, 0.0]))
+MEASURED_FOCAL = 0.002
+MEASURED = replace(
+    CAMERA,
+    distortion=np.array([-0.1, 0.05, 0.001, -0.001, 0.0]),
+    focal_deviation=MEASURED_FOCAL,
+)
 THREE: Faces = ("front", "right", "top")
 """The faces that `held()` shows."""
 
@@ -72,13 +76,14 @@ def solved_with_k1(points: Array, pixels: Array, start: Array) -> Array:
     )
 
 
-CLAIMED_LENS, MEASURED_LENS = (0.1, CLAIMED_FOCAL), (0.005, MEASURED_FOCAL)
+CLAIMED_LENS, MEASURED_LENS = (0.1, UNSTATED_FOCAL), (0.005, MEASURED_FOCAL)
 """Errors of k1 and of the focal length of a lens that claims none, and of one that was measured."""
 
 
 def stated(pose: Array, faces: Faces, camera: Intrinsics = MEASURED) -> tuple[Array, Array]:
     k1_error = (MEASURED_LENS if camera.distortion.any() else CLAIMED_LENS)[0]
-    return SystematicError(CUBE, Projection(camera)).covariance(pose, faces, k1_error)
+    by_corners, moves = SystematicError(CUBE, Projection(camera)).covariance(pose, faces, k1_error)
+    return by_corners, moves @ moves.T
 
 
 def ratios(one: Array, other: Array) -> Array:

@@ -39,10 +39,13 @@ STATE = CubeState(
 )
 
 
-def feed(*frames, options=OPTIONS, lens=NO_LENS):
+GUESS = Intrinsics.guess((1280, 720))
+
+
+def feed(*frames, options=OPTIONS, lens=NO_LENS, intrinsics=GUESS):
     """Feed a monitor with one step a frame: changes of its state, an emotion, and a robot."""
     playground: Any = SimpleNamespace(
-        lens=lens, intrinsics=Intrinsics.guess((1280, 720)), quality=QUALITIES["reduced"]
+        lens=lens, measured_intrinsics=intrinsics, quality=QUALITIES["reduced"]
     )
     nothing: Any = None
     monitor = SessionMonitor(options, FrameTimes(itertools.count(step=0.01).__next__))
@@ -78,11 +81,19 @@ def test_tracking_shows_verdict_faces_residual_and_stated_error():
         "Measured on": ("markers", "plain"),
         "Residual": ("0.25 px", "plain"),
         "Stated error": ("2.0 mm, 0.57°", "plain"),
+        "Lens": ("1109 px ± 35 %, 60° wide", "warning"),
         "Seen lately": ("75 % at 10 frames/s", "warning"),
     }
     (curve,) = plot.curves
     np.testing.assert_allclose(curve.times, [-0.3, -0.2, -0.1, 0.0])
     np.testing.assert_array_equal(curve.values, [0.25, 0.25, np.nan, 0.25])
+
+
+def test_tracking_shows_how_surely_play_has_measured_the_focal_length():
+    measured = feed(SEEN, intrinsics=GUESS.lengthen(0.59, 0.012))
+    assert shown("tracking", measured)[0]["Lens"] == Fact("Lens", "654 px ± 1.2 %, 89° wide")
+    calibrated = feed(SEEN, intrinsics=GUESS.lengthen(0.59, None))
+    assert shown("tracking", calibrated)[0]["Lens"] == Fact("Lens", "654 px, 89° wide")
 
 
 @pytest.mark.parametrize("refused", REFUSALS)
