@@ -53,14 +53,14 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.soak --hours 2.4
 	$(BIN)/python -m tests.campaigns.afternoon --scenes "every key" "record and replay"
 	$(BIN)/python -m tests.campaigns.behaviour --blocks 10000
-	$(BIN)/python -m tests.campaigns.growth --steps 5
+	$(BIN)/python -m tests.campaigns.growth --steps 3
 	$(BIN)/python -m tests.campaigns.server --short --seconds 1
 	$(BIN)/python -m tests.campaigns.drawing --minutes 1
 	$(BIN)/python -m tests.campaigns.files --files 1e4
 	$(BIN)/python -m tests.campaigns.kills --kills 10
 	$(BIN)/python -m tests.campaigns.camera_faults --faults stall "huge header"
-	$(BIN)/python -m tests.campaigns.long_play --hours 0.4
-	$(BIN)/python -m tests.campaigns.tracker --frames 2400
+	$(BIN)/python -m tests.campaigns.long_play --hours 0.1
+	$(BIN)/python -m tests.campaigns.tracker --frames 1200
 
 # pre-commit runs the parts, each where it has something to check.
 check: check-format check-lint check-licences check-floors check-types  ## check formatting, lint, docstrings, licences, the floors of the rooms, and types
