@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from scipy.linalg import block_diag
 
 from cubeling.tracking.cube.model import CubeModel, Face
 from cubeling.tracking.geometry import se3
@@ -167,10 +166,16 @@ class FocalLengthEstimator:
         self._matrix, self._distortion = intrinsics.matrix, intrinsics.distortion
         assert intrinsics.focal_deviation is not None, "a stated focal length is not measured"
         centre = [max(intrinsics.centre_deviation, 1.0)] * 2
-        self._prior = block_diag(
+        blocks = [
             np.diag(1 / np.square([intrinsics.focal_deviation, K1_SPREAD, *centre])),
             *(np.linalg.inv(_shape_covariance(face)) for face in cube.faces),
-        )
+        ]
+        self._prior = np.zeros((sum(map(len, blocks)),) * 2)
+        start = 0
+        for block in blocks:
+            end = start + len(block)
+            self._prior[start:end, start:end] = block
+            start = end
         self._shared = np.zeros(len(self._prior))
         """Logarithm of the scale, k1, how far the principal point is from where it is said to be
         [px], and each corner from its place [m], (4 + 12 F,)."""
