@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from cubeling.bad_input import BadInputError
+from tests.campaigns.files import examples
 from tests.campaigns.files.__main__ import campaign, read_all, reader_of, readers
 
 pytestmark = pytest.mark.full  # all modules of the rooms are loaded
@@ -54,7 +55,8 @@ def _failure(name: str, path: Path) -> str:
     return "" if allowed else f"{name}, {path.name}: was read"
 
 
-def test_damaged_files_are_read_or_refused(tmp_path):
+def test_damaged_files_are_read_or_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(examples, "SHARED", tmp_path)  # as on a machine without it
     trials, problems = campaign(150, "", tmp_path, None, 1)
     assert not problems
     assert [trial.failure for found in trials.values() for trial in found if trial.failure] == []

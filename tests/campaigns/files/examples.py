@@ -9,6 +9,7 @@ import numpy as np
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.sound import write_wave
 from cubeling.app.ui.video_file import VideoFile
+from cubeling.app.workshop.scenario_templates import RULES
 from cubeling.bad_input import BadInputError
 from cubeling.characters import Character
 from cubeling.characters.control.speech_profile import SpeechProfile
@@ -23,6 +24,7 @@ from cubeling.characters.synthesis.graphs.storage import save_graph
 from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.files import FileKind
 from cubeling.tracking import Intrinsics
+from tests.characters.formats.built_gltf import build_arm
 from tests.characters.formats.hopper import hopper
 
 TREE = Path(__file__).parents[3]
@@ -86,6 +88,8 @@ def _writers() -> Iterator[tuple[str, Callable[[Path], object]]]:
     yield "a.mp4", _write_video
     yield "a.txt", lambda path: path.write_text(TEXT, "utf-8")
     yield "a.bml", lambda path: path.write_text(BLOCK, "utf-8")
+    yield "rules.toml", lambda path: path.write_text(RULES, "utf-8")
+    yield "a.glb", lambda path: path.write_bytes(build_arm().bytes())
     yield "profile.toml", SpeechProfile().save
     yield "preferences.toml", _keep_preferences
 

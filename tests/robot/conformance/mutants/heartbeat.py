@@ -201,20 +201,21 @@ class DoesNotGoToNeutral(Mutant):
 
 @breaks("failsafe goes to neutral", "bye goes to neutral", "another host goes to neutral")
 class PlaysOnWhenAlone(Mutant):
-    playing = False
+    played: int | None = None
 
     def set_up(self) -> None:
         play = self.body.play
 
         def playing(item: int, index: int) -> None:
-            self.playing = True
+            if item == m.ITEM_MOTION:
+                self.played = index
             play(item, index)
 
         self.body.play = playing  # type: ignore[method-assign]
 
     def send_message(self, session: int, message: Any) -> None:
-        if isinstance(message, m.State) and self.playing:
-            message = replace(message, motion=7)
+        if isinstance(message, m.State) and self.played is not None:
+            message = replace(message, motion=self.played)
         super().send_message(session, message)
 
 
