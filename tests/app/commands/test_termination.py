@@ -65,10 +65,12 @@ def test_a_simulated_robot_ends_with_the_code_of_the_signal(number, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "begun"),
     [
-        (("robot", "conform", "sim:cubeling"), "hello answered"),
         (("behave", "--serve", "0", "--no-window"), "Blocks of BML come in"),
+        pytest.param(
+            *(("robot", "conform", "sim:cubeling"), "hello answered"), marks=pytest.mark.full
+        ),
     ],
-    ids=["conform", "behave"],
+    ids=["behave", "conform"],
 )
 @pytest.mark.slow(reason="programs are started")
 def test_commands_end_with_the_code_of_the_signal(arguments, begun, tmp_path):
