@@ -25,7 +25,7 @@ SCHEDULE_FILE = FileKind(
     "schedule",
     (".xml",),
     AppError,
-    10_000_000,
+    1_000_000,
     "cubeling.app.commands.schedule:read_schedule",
 )
 """A blending schedule; a larger one is not written by hand."""

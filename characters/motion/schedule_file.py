@@ -43,7 +43,7 @@ _HANIM_PARTS = {
 }
 """Body parts by the joint names of the documents (H-Anim)."""
 
-LIMITS = XmlLimits(bytes=4_000_000, elements=20_000, depth=60)
+LIMITS = XmlLimits(bytes=1_000_000, elements=20_000, depth=60)
 """Larger schedules are not written by hand."""
 
 MAX_ACTIVE = 500
