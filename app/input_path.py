@@ -3,12 +3,11 @@
 Whoever reads a file refuses what is wrong with it; here a name with a slip is refused at once.
 """
 
-import os
-import stat
 from collections.abc import Iterable
 from pathlib import Path
 
 from cubeling.app.errors import AppError
+from cubeling.files import check_regular
 
 
 def check_input(path: str | Path | None, kind: str) -> None:
@@ -26,16 +25,8 @@ def check_input(path: str | Path | None, kind: str) -> None:
     AppError
         With the line that the reader of the file would end in.
     """
-    if path is None:
-        return
-    try:
-        is_file = stat.S_ISREG(os.stat(path).st_mode)
-    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
-        reason = getattr(error, "strerror", None) or str(error)
-        raise AppError(f"cannot read the {kind} '{path}': {reason}") from None
-    if not is_file:
-        reason = "it is a folder, a pipe or a device; give a file"
-        raise AppError(f"cannot read the {kind} '{path}': {reason}")
+    if path is not None:
+        check_regular(path, kind, AppError)
 
 
 def check_motions(names: Iterable[str]) -> None:

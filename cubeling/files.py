@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from cubeling.bad_input import one_line
+
 KINDS: list["FileKind"] = []
 """Every kind of file whose module is loaded."""
 
@@ -59,14 +61,12 @@ class FileKind:
             If it cannot be opened, is no regular file (a pipe or a device may never end), or is
             larger than `max_bytes`.
         """
+        # Looking comes first: to open some devices does something, such as to reset a robot.
+        check_regular(path, self.name, self.error)
         try:
-            # Looking comes first: to open some devices does something, such as to reset a robot.
-            kept = stat.S_ISREG(os.stat(path).st_mode)
-            file = _OpenFile(io.FileIO(path, opener=_open_at_once)) if kept else None
-        except (OSError, ValueError) as cause:  # ValueError: a name that no file can have
-            raise self._refused(path, getattr(cause, "strerror", None) or str(cause)) from None
-        if file is None:
-            raise self._refused(path, "it is a folder, a pipe or a device; give a file")
+            file = _OpenFile(io.FileIO(path, opener=_open_at_once))
+        except OSError as cause:
+            raise self._refused(path, cause.strerror or str(cause)) from None
         size = os.fstat(file.fileno()).st_size
         if size > self.max_bytes:
             file.close()
@@ -98,7 +98,23 @@ class FileKind:
             raise self._refused(path, reason) from None
 
     def _refused(self, path: str | Path, reason: str) -> Exception:
-        return self.error(f"cannot read the {self.name} {_quoted(path)}: {reason}")
+        return _unreadable(path, self.name, reason, self.error)
+
+
+def check_regular(path: str | Path, name: str, error: type[Exception]) -> None:
+    """Refuse what is not there or is no regular file; `name` says what it is, as in `FileKind`."""
+    try:
+        is_file = stat.S_ISREG(os.stat(path).st_mode)
+    except (OSError, ValueError) as cause:  # ValueError: a name that no file can have
+        reason = getattr(cause, "strerror", None) or str(cause)
+        raise _unreadable(path, name, reason, error) from None
+    if not is_file:
+        reason = "it is a folder, a pipe or a device; give a file"
+        raise _unreadable(path, name, reason, error)
+
+
+def _unreadable(path: str | Path, name: str, reason: str, error: type[Exception]) -> Exception:
+    return error(f"cannot read the {name} '{one_line(str(path))}': {reason}")
 
 
 @contextmanager
@@ -120,7 +136,7 @@ def whole_file(path: str | Path, error: type[Exception]) -> Iterator[Path]:
         os.replace(partial, target)
     except OSError as cause:
         reason = cause.strerror or str(cause)
-        raise error(f"cannot write {_quoted(path)}: {reason}") from cause
+        raise error(f"cannot write '{one_line(str(path))}': {reason}") from cause
     finally:
         with suppress(OSError):  # a folder that is none
             partial.unlink(missing_ok=True)
@@ -154,11 +170,6 @@ class _OpenFile(io.BufferedReader):
 def _open_at_once(path: str, flags: int) -> int:
     """Open a file without waiting, should it have become a pipe since it was looked at."""
     return os.open(path, flags | _BLOCKED_OPEN, 0o666)
-
-
-def _quoted(path: str | Path) -> str:
-    text = str(path)
-    return f"'{text}'" if text.isprintable() else repr(text)
 
 
 def _amount(size: int) -> str:

@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cubeling.affect import AffectError, Personality
+from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.other_cube import cube_for
 from cubeling.app.pipeline.playground import Playground
@@ -22,8 +22,8 @@ from cubeling.app.speaking.recorded import Speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import Screen
-from cubeling.characters import CharacterError
-from cubeling.tracking import CubeModel, FrameSource, TrackingError
+from cubeling.bad_input import BadInputError
+from cubeling.tracking import CubeModel, FrameSource
 
 if TYPE_CHECKING:
     from cubeling.app.running.players import PlayerPublisher
@@ -149,7 +149,7 @@ class OpenedSession:
             scenario = scenario_of(self.options, name, cube)
             playground.keep_lens()
             playground.play(scenario, cube)
-        except (AppError, AffectError, CharacterError, TrackingError) as error:
+        except BadInputError as error:
             self.screen.notify(str(error))
             return
         # A recording that begins now names the cube as the user did.

@@ -13,14 +13,14 @@ from cubeling.characters.skeleton.pose import Array, Pose
 
 Image = NDArray[np.uint8]
 
-SIZE = 360, 420
+PICTURE_SIZE = 360, 420
 """Width and height of a picture unless the caller says otherwise [px]."""
 
 
 def draw_picture(
     character: Character,
     pose: Pose | None = None,
-    size: tuple[int, int] = SIZE,
+    size: tuple[int, int] = PICTURE_SIZE,
     *,
     azimuth: float = 0.4,
     elevation: float = 0.16,
@@ -60,7 +60,7 @@ def draw_picture(
 def draw_clip(
     character: Character,
     clip: Clip,
-    size: tuple[int, int] = SIZE,
+    size: tuple[int, int] = PICTURE_SIZE,
     *,
     every: int = 1,
     azimuth: float = 0.4,

@@ -4,16 +4,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cubeling.app.errors import AppError
-from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, MOMENTARY, Term
+from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, MOMENTARY_CONDITIONS, Term
 from cubeling.toml_file import TomlTable, read, toml_kind
 
 RULES_FILE = toml_kind("scenario", AppError, "cubeling.app.scenarios.rules.file:read_rules")
 """A scenario that is a file of rules."""
 
-FACES = ("top", "bottom", "front", "back", "left", "right")
+FACE_NAMES = ("top", "bottom", "front", "back", "left", "right")
 """Names of the faces of every cube: other words after "top" are roles."""
 
-SECONDS = 3.0
+USUAL_ACTING_S = 3.0
 """How long a rule acts unless it says so [s]."""
 
 LONGEST_S = 600.0
@@ -77,7 +77,9 @@ class RuleSet:
     def roles(self) -> tuple[str, ...]:
         """The roles of faces that the rules read: the cube must have them."""
         terms = (term for rule in self.rules for term in rule.conditions if term.name == "top")
-        return tuple(dict.fromkeys(each.argument for each in terms if each.argument not in FACES))
+        return tuple(
+            dict.fromkeys(each.argument for each in terms if each.argument not in FACE_NAMES)
+        )
 
     @property
     def lines(self) -> dict[str, tuple[str, ...]]:
@@ -133,7 +135,7 @@ def _rule(row: TomlTable) -> Rule:
         raise row.wrong(key, str(error)) from None
     after = row.number("after", 0.0, LONGEST_S, 0.0)
     for term in terms:
-        if after > 0.0 and term.name in MOMENTARY and not term.negated:
+        if after > 0.0 and term.name in MOMENTARY_CONDITIONS and not term.negated:
             raise row.wrong("after", f"'{term.name}' holds for a moment only; leave after out")
     actions = tuple(
         (name, row.choice(name, action.choices) if action.choices else row.line(name))
@@ -147,7 +149,7 @@ def _rule(row: TomlTable) -> Rule:
         terms,
         key == "while",
         after,
-        row.number("for", 0.0, LONGEST_S, SECONDS),
+        row.number("for", 0.0, LONGEST_S, USUAL_ACTING_S),
         actions,
         say,
     )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # a file is checked before numpy is loaded
 PACES = {"walk": 2.5, "run": 4.5}
 """AvatAR's Speed of each pace, 0…5."""
 
-PLACES = ("cube", "home")
+DESTINATIONS = ("cube", "home")
 """Where a character can be sent."""
 
 
@@ -59,7 +59,7 @@ class Intent:
     """Name of an action of the character."""
 
     go: str = ""
-    """One of `PLACES`; "" to stay."""
+    """One of `DESTINATIONS`; "" to stay."""
 
     pace: str = "walk"
     """One of `PACES`."""
@@ -148,10 +148,10 @@ CONDITIONS: dict[str, Condition] = {
 }
 """The conditions by name; a new one is a line here."""
 
-MOMENTARY = ("placed", "shaken", "gesture", "cleared")
+MOMENTARY_CONDITIONS = ("placed", "shaken", "gesture", "cleared")
 """Conditions that hold in a single frame."""
 
-NUMBERS = ("TURNS", "CM")
+NUMBER_ARGUMENTS = ("TURNS", "CM")
 """Arguments that are numbers."""
 
 ACTIONS: dict[str, Action] = {
@@ -162,7 +162,7 @@ ACTIONS: dict[str, Action] = {
     "go": Action(
         "go to the cube, or back to where it stood first",
         lambda intent, place: setattr(intent, "go", place),
-        PLACES,
+        DESTINATIONS,
     ),
     "pace": Action(
         "how it goes there", lambda intent, pace: setattr(intent, "pace", pace), tuple(PACES)
@@ -211,7 +211,7 @@ class Term:
         if bool(argument) != bool(condition.argument):
             wanted = f"as in '{name} {condition.argument}'" if condition.argument else "nothing"
             raise AppError(f"'{text}': after '{name}' comes {wanted}")
-        if condition.argument in NUMBERS and not _is_positive(argument):
+        if condition.argument in NUMBER_ARGUMENTS and not _is_positive(argument):
             raise AppError(f"'{text}': '{argument}' is no number of {condition.argument.lower()}")
         return cls(name, argument, negated)
 

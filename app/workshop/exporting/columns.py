@@ -52,7 +52,7 @@ def _yaw(posed: PosedCharacter) -> float:
 CAMERA_AXES = ("to the right", "down", "forward")
 """Axes of the camera frame, as in OpenCV."""
 
-COLOURS = ("red", "green", "blue")
+COLOUR_NAMES = ("red", "green", "blue")
 
 CONTEXT_COLUMNS = (
     Column("session", "", "Name of the session's file, without its suffix", lambda row: row[0]),
@@ -178,13 +178,13 @@ EXPORT_TABLES = (
                 ("key_r", "key_g", "key_b"),
                 "",
                 [f"Irradiance of the key light, linear {colour}; 1 makes white just white"
-                 for colour in COLOURS],
+                 for colour in COLOUR_NAMES],
                 _of_light("key"),
             ),
             *vector(
                 ("ambient_r", "ambient_g", "ambient_b"),
                 "",
-                [f"Irradiance from all around, linear {colour}" for colour in COLOURS],
+                [f"Irradiance from all around, linear {colour}" for colour in COLOUR_NAMES],
                 _of_light("ambient"),
             ),
             field("light_certainty", "", "How well the direction of the light is known, 0 to 1",

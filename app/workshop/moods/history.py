@@ -20,7 +20,7 @@ from cubeling.tracking import CubeControls
 
 Array = NDArray[np.float64]
 
-TOPICS = ("/cube/controls", "/character/command", "/robot/emotion")
+MOOD_TOPICS = ("/cube/controls", "/character/command", "/robot/emotion")
 """The channels that are read, in the order of a frame."""
 
 
@@ -96,10 +96,12 @@ def _history(session: SessionFile) -> MoodHistory:
     path, info = session.path, session.info
     frames: list[dict[str, Any]] = []
     frame: dict[str, Any] = {}
-    for topic, _, message in session.decoded({topic: MESSAGE_TYPES[topic] for topic in TOPICS}):
+    for topic, _, message in session.decoded(
+        {topic: MESSAGE_TYPES[topic] for topic in MOOD_TOPICS}
+    ):
         frame[topic] = message
         if topic == "/robot/emotion":  # the last of these channels in a frame
-            if len(frame) == len(TOPICS):
+            if len(frame) == len(MOOD_TOPICS):
                 frames.append(frame)
             frame = {}
     if len(frames) < 2:

@@ -164,7 +164,7 @@ def test_a_behaviour_is_over_an_hour_after_its_block_has_started():
 
 
 def test_what_is_tied_to_what_is_left_out_is_left_out_at_once():
-    """A chain that was left out link by link, each time planned anew."""
+    """A chain that was left out link by link, each time planned again."""
     heads = [f"<head id='h{i}' start='h{i - 1}:end'/>" for i in range(1, MAX_BEHAVIOURS - 1)]
     gone = dropped(f"<head id='h0' start='2' end='1'/>{''.join(heads)}<gaze id='z'/>")
     assert len(gone) == MAX_BEHAVIOURS - 1
