@@ -13,11 +13,10 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.attention import Attention
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.choices import REALISM_CHOICES
+from cubeling.app.pipeline.cube_advice import CubeAdvice
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
-from cubeling.app.pipeline.other_cube import OtherCube, advice
 from cubeling.app.pipeline.picture_regions import picture_regions
-from cubeling.app.pipeline.print_watch import PrintWatch, fault_advice
 from cubeling.app.pipeline.props import BodyParts, PosedBody
 from cubeling.app.pipeline.registry import make_scenario
 from cubeling.app.pipeline.scenario import (
@@ -56,7 +55,6 @@ from cubeling.tracking import (
     Frame,
     Intrinsics,
     LensEstimate,
-    PrintFault,
     TrackingError,
 )
 from cubeling.tracking.appearance import APPEARANCE_PARTS, Appearance, AppearanceMeter
@@ -70,9 +68,6 @@ LOG = logging.getLogger(__name__)
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
 
-FOLD_IT, FOLD_IT_SHOWN_S = "This is the sheet: fold it into a cube.", 1.0
-"""What the player is told who shows the sheet, and for how long after it was seen [s]."""
-
 STATE_NAMES = (
     "scenario",
     "_tracker",
@@ -81,11 +76,7 @@ STATE_NAMES = (
     "_posed",
     "_body",
     "_attention",
-    "_other_cube",
-    "other_cube",
-    "_sheet_seen_at",
-    "_print_watch",
-    "print_fault",
+    "_cube_advice",
     "_speaking",
     "_complexion",
     "_window",
@@ -191,13 +182,7 @@ class Playground:
         self._body: PosedBody | None = None
         self._attention = Attention(self._look, cube.edge)
         self._window = CubeWindow(cube, character, scenario.roles, self._inside)
-        self._other_cube = OtherCube(cube, self.known_cubes)
-        self.other_cube: CubeModel | None = None
-        """Another cube than the one in play, if one is in view."""
-        self._sheet_seen_at = -math.inf
-        self._print_watch = PrintWatch(cube, self.intrinsics)
-        self.print_fault: PrintFault | None = None
-        """In what the print of the cube differs from its file, while the player is told."""
+        self._cube_advice = CubeAdvice(cube, self.intrinsics, self.known_cubes)
         self._speaking = Speaking()
         self._complexion = Complexion()
 
@@ -332,17 +317,13 @@ class Playground:
         command = self.command(state, controls, decision, inputs)
         if replay.command is not None:
             command = replay.command
-        self.other_cube = self._other_cube.update(frame, state)
-        self.check_print(frame, state)
+        self.advise(frame, state)
         self._lap("scenario")
         posed = replay.pose_for(self.character) or self.animate(command)
         self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
         self._complexion.update(command.timestamp, command.emotion)
         interior = self._window.update(state, controls, command, inputs.inside)
-        if state.refused == "flat":
-            self._sheet_seen_at = state.timestamp
-        hint = self._hint(decision, state.timestamp)
-        outcome = replace(decision, command=command, hint=hint)
+        outcome = replace(decision, command=command, hint=self._hint(decision))
         self._lap("animation")
         matrix = self._lens.matrix
         step = Step(
@@ -365,6 +346,11 @@ class Playground:
             step = replace(step, picture=self.draw(step))
         self._lap("drawing")
         return step
+
+    @property
+    def other_cube(self) -> CubeModel | None:
+        """Another cube than the one in play, if one is in view."""
+        return self._cube_advice.other_cube
 
     @property
     def measured_intrinsics(self) -> Intrinsics:
@@ -394,11 +380,14 @@ class Playground:
             LOG.debug("the tracker failed in frame %d", frame.index, exc_info=True)
             return self._tracker.give_up(frame.timestamp)
 
-    def check_print(self, frame: Frame, state: CubeState) -> None:
-        """Look now and then whether the cube is printed as its file says; read it if it can be."""
-        self.print_fault = self._print_watch.update(frame, state)
-        if self._print_watch.printed is not self._tracker.cube:
-            self._tracker = CubeTracker(self._print_watch.printed, self.intrinsics)
+    def advise(self, frame: Frame, state: CubeState) -> None:
+        """Look now and then what the player has to be told of the cube in view.
+
+        One that is printed otherwise than its file says is read as it is, if it can be.
+        """
+        self._cube_advice.update(frame, state)
+        if self._cube_advice.printed is not self._tracker.cube:
+            self._tracker = CubeTracker(self._cube_advice.printed, self.intrinsics)
 
     def gesture(self, state: CubeState) -> CubeControls:
         """Compute what the hand does with the cube."""
@@ -439,15 +428,10 @@ class Playground:
             speech=self._speaking.update(inputs.line, command, silence=inputs.clear),
         )
 
-    def _hint(self, decision: Outcome, now: float) -> str:
+    def _hint(self, decision: Outcome) -> str:
         """Return what the player can do now; what the cube in view is comes first."""
-        if 0.0 <= now - self._sheet_seen_at < FOLD_IT_SHOWN_S:
-            return FOLD_IT
-        if self.other_cube is not None:
-            return advice(self.other_cube, self.scenario.name, self.cube.name, self.fixed)
-        if self.print_fault is not None:
-            return fault_advice(self.print_fault, self.cube)
-        return LOOK_INSIDE if self._window.invites else decision.hint
+        told = self._cube_advice.hint(self.scenario.name, self.fixed)
+        return told or (LOOK_INSIDE if self._window.invites else decision.hint)
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
         """Advance the character to the time of a command."""
