@@ -7,7 +7,6 @@ network; and within this process, five times as fast, before a driver of a webca
 """
 
 import argparse
-import itertools
 import math
 import os
 import re
@@ -16,17 +15,12 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass, field
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Thread
 
-import cv2
-import numpy as np
 from rich.console import Console
 from rich.table import Table
 
@@ -37,15 +31,16 @@ from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.tracking import TrackingError
 from cubeling.tracking.sources.live import LiveSource
-from tests.campaigns.phone import jpegs
-from tests.tracking.sources.live import claims
+from tests.campaigns.faulty_camera import (
+    FAULTS,
+    RATE,
+    Fault,
+    FaultyPhone,
+    Sent,
+    faulty_phone,
+    usual,
+)
 from tests.virtual_screen import VirtualScreen
-
-RATE = 15.0
-"""Pictures a second of the cameras."""
-
-SIZE = 640, 360
-"""Size of the pictures [px]."""
 
 BEFORE_S, FAULT_S, AFTER_S = 2.0, 8.0, 5.0
 """Time before the fault, of the fault, and after it [s]: a session without a window used to end
@@ -62,69 +57,6 @@ PATIENCE_S = 60.0
 
 PICTURE_BYTES = 10_000
 """A recording that grows by more than this has another picture."""
-
-Sent = bytes | None
-"""A picture as a camera sends it; None if it sends nothing."""
-
-PICTURES = jpegs(60, SIZE)
-"""What the camera sees, again and again."""
-
-
-@dataclass(frozen=True)
-class Fault:
-    """A fault of a camera."""
-
-    send: Callable[[int], Sent] = lambda number: None
-    """What is sent instead of a picture, by its number since the beginning of the stream."""
-
-    connects: bool = True
-    """Whether the camera can be opened while the fault lasts."""
-
-    breaks_after: int | None = None
-    """Number of pictures after which the stream breaks off; None if it does not."""
-
-    status: int = 200
-    """What a phone answers."""
-
-    raw: bool = False
-    """Whether a phone sends what it sends without the frame of a stream."""
-
-    loses: bool = True
-    """Whether the camera then counts as lost."""
-
-
-def garbage(number: int) -> bytes:
-    """Return bytes that are nothing."""
-    return np.random.default_rng(number).bytes(20_000)
-
-
-def usual(number: int) -> bytes:
-    """Return a picture."""
-    return PICTURES[number % len(PICTURES)]
-
-
-def _jpeg(image: np.ndarray) -> bytes:
-    return cv2.imencode(".jpg", image)[1].tobytes()
-
-
-UPRIGHT = [_jpeg(np.full((SIZE[0], SIZE[1], 3), grey, np.uint8)) for grey in (80, 90)]
-BLACK = _jpeg(np.zeros((SIZE[1], SIZE[0], 3), np.uint8))
-
-FAULTS = {
-    "stall": Fault(),
-    "close": Fault(connects=False, breaks_after=0),
-    "reopen": Fault(usual, breaks_after=3, loses=False),
-    "slow": Fault(lambda number: usual(number) if number % round(2 * RATE) == 0 else None),
-    "half JPEG": Fault(lambda number: usual(number)[: len(usual(number)) // 2]),
-    "wrong size": Fault(lambda number: UPRIGHT[number % 2]),
-    "huge header": Fault(lambda number: claims(usual(number), (65000, 65000))),
-    "black": Fault(lambda number: BLACK, loses=False),
-    "frozen": Fault(lambda number: usual(0), loses=False),
-    "garbage": Fault(garbage, raw=True),
-    "refused at first": Fault(connects=False, breaks_after=0, status=503),
-}
-"""The faults by their names. Black and frozen pictures are no loss of a phone, which may lie on a
-table; those of a webcam are."""
 
 
 @dataclass
@@ -148,63 +80,6 @@ class Played:
 
     missing: str = ""
     """When the camera was lost, by the summary."""
-
-
-class FaultyPhone(ThreadingHTTPServer):
-    """Serves pictures over HTTP, with a fault while one is set."""
-
-    daemon_threads = True
-
-    def __init__(self) -> None:
-        super().__init__(("127.0.0.1", 0), _Stream)
-        self.fault: Fault | None = None
-        self.streams = 0
-
-    def verify_request(self, request: object, client_address: object) -> bool:
-        """Close connections at once while the phone cannot be reached."""
-        return self.fault is None or self.fault.connects or self.fault.status != 200
-
-    def handle_error(self, request: object, client_address: object) -> None:
-        """Say nothing: clients close the connection."""
-
-
-class _Stream(BaseHTTPRequestHandler):
-    server: FaultyPhone
-
-    def log_message(self, format: str, *arguments: object) -> None:
-        """Say nothing."""
-
-    def do_GET(self) -> None:
-        self.server.streams += 1
-        fault = self.server.fault
-        self.send_response(200 if fault is None else fault.status)
-        self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
-        self.end_headers()
-        if fault is not None and fault.status != 200:
-            return
-        start, since = time.monotonic(), 0
-        for number in itertools.count():
-            fault = self.server.fault
-            since = 0 if fault is None else since + 1
-            if fault is not None and fault.breaks_after is not None and since > fault.breaks_after:
-                return
-            data = usual(number) if fault is None else fault.send(number)
-            if data is not None:
-                raw = fault is not None and fault.raw
-                head = f"--frame\r\nContent-Length: {len(data)}\r\n\r\n".encode()
-                self.wfile.write(data if raw else head + data + b"\r\n")
-            time.sleep(max(0.0, start + number / RATE - time.monotonic()))
-
-
-@contextmanager
-def faulty_phone() -> Iterator[FaultyPhone]:
-    """Serve until the end of the block."""
-    with FaultyPhone() as server:
-        Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05}, daemon=True).start()
-        try:
-            yield server
-        finally:
-            server.shutdown()
 
 
 def play_by_program(name: str, screen: VirtualScreen | None) -> Played:

@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.campaigns.camera_faults import FAULTS, play_by_driver
+from tests.campaigns.camera_faults import play_by_driver
+from tests.campaigns.faulty_camera import FAULTS
 from tests.campaigns.kills import MAX_LOSS_S, kills
 from tests.campaigns.long_play import RATE, play_virtually
 
