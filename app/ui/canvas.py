@@ -181,6 +181,18 @@ def text_width(words: str, size: float) -> float:
     return float(text_mask(words, 100)[0].shape[1] * size / 100)
 
 
+def wrap_text(words: str, width: float, size: float) -> list[str]:
+    """Return words in lines of at most this width; a longer word has a line of its own."""
+    lines = [""]
+    for word in words.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if lines[-1] and text_width(longer, size) > width:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines
+
+
 def rounded_rectangle(width: int, height: int, radius: int, value: int) -> NDArray[np.uint8]:
     """Return a mask (height, width) of a rectangle with round corners; `value` inside."""
     y, x = np.mgrid[:height, :width] + 0.5

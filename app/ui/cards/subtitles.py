@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from cubeling.app.pipeline.step import Rect
-from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, can_be_written, text_width
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, can_be_written, text_width, wrap_text
 from cubeling.app.ui.cards.layout import CARD_GAP, CARD_MARGIN, are_apart
 from cubeling.app.ui.palette import INK
 from cubeling.characters import SpeechIntent
@@ -79,7 +79,7 @@ def subtitle_room(picture_width: float, card_width: float) -> float:
 def draw_subtitle(words: str, room: float, scale: float) -> Canvas:
     """Return the card of a subtitle that is at most as wide as its room, if its words are not."""
     size = SIZE
-    lines = wrap_text(words, room - 40)
+    lines = wrap_text(words, room - 40, size)
     while size > MIN_SIZE and (
         LINE_HEIGHT * len(lines) * size / SIZE + 18 > MAX_HEIGHT
         or max(text_width(line, size) for line in lines) > room - 40
@@ -110,15 +110,3 @@ def subtitle_place(
         if not are_apart((x, y, x + width, y + height), [card]):
             y = card[1] - CARD_GAP - height
     return x, y
-
-
-def wrap_text(words: str, width: float, size: float = SIZE) -> list[str]:
-    """Return words in lines of at most this width; a longer word has a line of its own."""
-    lines = [""]
-    for word in words.split():
-        longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and text_width(longer, size) > width:
-            lines.append(word)
-        else:
-            lines[-1] = longer
-    return lines

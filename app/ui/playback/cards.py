@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width, wrap_text
 from cubeling.app.ui.cards.layout import HINT_ROOM
 from cubeling.app.ui.palette import ACTION_COLORS, INK, QUIET, RULE, Color
 from cubeling.app.ui.playback.keys import KeyHelp, key_rows
@@ -38,22 +38,10 @@ def draw_pills(
     """
     cards, y = [], PILLS_TOP
     for words, color in pills:
-        lines = _lines(words, min(width - 60, HINT_ROOM - 70))
+        lines = tuple(wrap_text(words, min(width - 60, HINT_ROOM - 70), PILL_TEXT))
         cards.append(_pill(lines, color, y, width, scale))
         y += PILL_HEIGHT + PILL_LINE * (len(lines) - 1) + PILL_GAP
     return cards
-
-
-def _lines(words: str, room: float) -> tuple[str, ...]:
-    """Return words in lines that are no wider than there is room, where they have spaces."""
-    lines: list[str] = []
-    for word in words.split(" "):
-        longer = f"{lines[-1]} {word}" if lines else word
-        if lines and text_width(longer, PILL_TEXT) <= room:
-            lines[-1] = longer
-        else:
-            lines.append(word)
-    return tuple(lines)
 
 
 @lru_cache(maxsize=32)

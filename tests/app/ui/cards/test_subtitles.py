@@ -44,7 +44,7 @@ def test_a_speech_without_words_shows_its_text():
 
 
 def test_lines_are_as_wide_as_there_is_room():
-    lines = wrap_text(TEXT, 300.0)
+    lines = wrap_text(TEXT, 300.0, SIZE)
     assert " ".join(lines) == TEXT
     assert all(text_width(line, SIZE) <= 300.0 for line in lines)
 
