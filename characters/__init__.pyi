@@ -38,6 +38,7 @@ from cubeling.characters.control.layers.upper_body import (
     dependent_joints_of as dependent_joints_of,
     safe_ranges_of as safe_ranges_of,
 )
+from cubeling.characters.control.loading import load_to_play as load_to_play
 from cubeling.characters.errors import (
     CharacterError as CharacterError,
     CharacterWarning as CharacterWarning,

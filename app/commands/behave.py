@@ -129,15 +129,14 @@ def behave(
     from cubeling.app.behaving.opening import open_lines, read_document
     from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
     from cubeling.app.behaving.recording import record_behaviour
-    from cubeling.characters import Character, with_lent_motions
+    from cubeling.characters import load_to_play
     from cubeling.characters.behaviour import GestureExpressivity
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.speech import blood_of
 
     how = GestureExpressivity(spatial, openness, fluidity, bias, tension, power)
     options = BehaviourOptions(how, feels, seed, places)
-    loaded = Character.load(character)
-    body = with_root_joint(loaded if own_motions_only else with_lent_motions(loaded))
+    body = with_root_joint(load_to_play(character, own_motions_only=own_motions_only))
     if serve is not None:
         first = [read_document(file) for file in files or []]
         shown = (pixels, view) if window else None

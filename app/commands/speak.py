@@ -113,14 +113,13 @@ def speak(
     from cubeling.app.sound.session_sound import at_sample_rate
     from cubeling.app.speaking.live import speak_live
     from cubeling.app.speaking.speech_video import Direction, speech_clip, write_video
-    from cubeling.characters import Character, with_lent_motions
+    from cubeling.characters import load_to_play
     from cubeling.characters.model import gestures_for, save_bvh, with_root_joint
     from cubeling.characters.speech import TaggedText, blood_of, utterance_of
 
     if save_profile is not None:
         how.save(save_profile)
-    loaded = Character.load(character)
-    body = with_root_joint(loaded if own_motions_only else with_lent_motions(loaded))
+    body = with_root_joint(load_to_play(character, own_motions_only=own_motions_only))
     if gestures is not None:
         body = replace(body, gestures=gestures_for(gestures, body.skeleton, character))
     if live:

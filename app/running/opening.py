@@ -27,8 +27,8 @@ from cubeling.app.ui.screen import NullScreen, Screen
 from cubeling.characters import (
     Character,
     choose_controller,
+    load_to_play,
     prepare_gestures,
-    with_lent_motions,
 )
 from cubeling.tracking import (
     CubeModel,
@@ -96,9 +96,9 @@ def open_session(
     cubes = [CubeModel.load(each) for each in options.cubes]
     cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
     scenario = scenario_of(options, options.scenario, cube)
-    character = Character.load(options.character or scenario.character)
-    if not options.own_motions_only:
-        character = with_lent_motions(character)
+    character = load_to_play(
+        options.character or scenario.character, own_motions_only=options.own_motions_only
+    )
     if options.idle is not None:
         if options.controller != "tree":
             raise AppError(

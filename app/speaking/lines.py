@@ -6,7 +6,6 @@ from pathlib import Path
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.registry import RULES_SUFFIX
-from cubeling.app.scenarios.rules.file import read_rules
 from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read, toml_kind
 
 LINES_FILE = toml_kind(
@@ -53,6 +52,8 @@ def bundled_lines(scenario: str, language: str) -> ScenarioLines | None:
 def bundled_languages(scenario: str) -> tuple[str, ...]:
     """Return the languages of the lines of a bundled scenario; () if it has none."""
     if scenario.endswith(RULES_SUFFIX):
+        from cubeling.app.scenarios.rules.file import read_rules
+
         rules = read_rules(scenario)
         return (rules.language,) if rules.lines else ()
     file = _bundled_file(scenario)
@@ -79,6 +80,8 @@ def languages_in(path: Path) -> tuple[str, ...]:
 
 
 def _rule_lines(path: str, language: str) -> ScenarioLines | None:
+    from cubeling.app.scenarios.rules.file import read_rules  # few scenarios are a file of rules
+
     rules = read_rules(path)
     if not rules.lines:
         return None

@@ -13,7 +13,7 @@ from cubeling.app.running.playback.transport import Transport
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.ui.playback.status import MenuChoice
-from cubeling.characters import Character, with_lent_motions
+from cubeling.characters import Character, load_to_play
 from cubeling.robot import serial_ports
 from cubeling.tracking import FrameSource, Intrinsics, TrackingError, open_source
 
@@ -114,8 +114,7 @@ def _characters(session: OpenedSession) -> Iterator[MenuChoice]:
 
 
 def _open_character(session: OpenedSession, name: str) -> Character:
-    character = Character.load(name)
-    return character if session.options.own_motions_only else with_lent_motions(character)
+    return load_to_play(name, own_motions_only=session.options.own_motions_only)
 
 
 def _exchange_character(
