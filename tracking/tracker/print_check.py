@@ -20,6 +20,7 @@ from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.image_region import Patch
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.robust_statistics import median_with_error
 from cubeling.tracking.refinement.edges.edge_refinement import EdgeRefiner
 from cubeling.tracking.refinement.footprint import Footprint
 
@@ -91,13 +92,9 @@ class PrintCheck:
         for fault, votes in self._votes.most_common(1):
             if votes >= MIN_LOOKS and not self._confirmed & set(fault.faces or ("all",)):
                 return fault
-        sizes = np.array(self._sizes)
-        if len(sizes) < MIN_SIZE_LOOKS:
+        if len(self._sizes) < MIN_SIZE_LOOKS:
             return None
-        size = float(np.median(sizes))
-        # 1.48 makes the median of distances a standard deviation, 1.25 is the price of a median.
-        spread = 1.48 * float(np.median(np.abs(sizes - size)))
-        error = 1.25 * spread / np.sqrt(len(sizes))
+        size, error = median_with_error(np.array(self._sizes))
         if abs(size - 1) < MIN_SIZE_ERROR + error or error > MAX_SIZE_ERROR_OF_MEDIAN:
             return None
         return PrintFault("size", marker_mm=round(1000 * self._cube.marker_size * size, 1))
