@@ -21,15 +21,15 @@ from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import MIN_DEPTH
 from cubeling.tracking.geometry.robust_statistics import quantile
 from cubeling.tracking.refinement.face_corners import FaceCorners
+from cubeling.tracking.refinement.lens_estimate import FOLD_SPREAD
 
 K1_SPREAD, BLOOM_PX = 0.15, 0.5
 """Standard deviations before anything is measured: of the radial distortion, and of how far white
 grows over black [px]."""
 
-FOLD_SPREAD, PRINT_SPREAD_M, BEND_SPREAD_M = (0.0005, np.deg2rad(0.6)), 0.00012, 0.0002
-"""The same of where a face was glued [m, rad], of a marker's corner on its paper, and of how far
-bent paper lifts it [m]. All pictures have these in common, so many pictures do not make them small.
-"""
+PRINT_SPREAD_M, BEND_SPREAD_M = 0.00012, 0.0002
+"""The same of a marker's corner on its paper, and of how far bent paper lifts it [m]. All pictures
+have these and `FOLD_SPREAD` in common, so many pictures do not make them small."""
 
 NOISE_M = 0.00005
 """What differs of them from picture to picture, as a hand presses on the paper [m]."""

@@ -89,6 +89,13 @@ class FittedEdges:
         """Radial distortion beyond that of the intrinsics, as far as this image tells it."""
         return self.profiles.k1 + float(self.fit.solution[8:].sum())
 
+    @property
+    def residual_without_k1(self) -> Array:
+        """Residuals of the same pose through the lens that the intrinsics claim, (M,) [px]."""
+        if self.profiles.bends is None:
+            return self.fit.residual
+        return self.fit.residual + self.profiles.bends[self.fit.strong] * self.k1
+
 
 def fit_edges(
     patch: Patch, profiles: EdgeProfiles, shifts: Array, width_px: float, steps: int = 3
