@@ -80,8 +80,9 @@ def track_video(
     cube
         A bundled cube, or your own .toml file.
     intrinsics
-        The camera; None for that of the source, or else for a lens of 60°: distances are then only
-        as right as that guess. `Intrinsics.load("camera.yaml")` reads a calibration.
+        The camera; None for that of the source, or else for a lens of 60°, whose focal length is
+        measured on the way: until then, distances are only as right as that guess.
+        `Intrinsics.load("camera.yaml")` reads a calibration.
 
     Raises
     ------

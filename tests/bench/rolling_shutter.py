@@ -4,7 +4,6 @@ The rows are drawn one after the other; the pose counts at the time of the middl
 """
 
 import argparse
-import itertools
 
 import numpy as np
 from rich.console import Console
@@ -12,7 +11,7 @@ from rich.table import Table
 
 from cubeling.tracking import CubeModel, CubeTracker, Frame
 from cubeling.tracking.geometry import se3
-from tests.tracking.drawn import CAMERA, Array, held, off, photograph, scene
+from tests.tracking.drawn import CAMERA, Array, held, off, rolled
 
 BANDS = 24
 """Bands of rows that are drawn at once."""
@@ -29,19 +28,15 @@ def waved(
     """Errors [mm] of a cube that is waved, each frame, and the time that was measured [s]."""
     rest, tracker, errors = held(0.5, 0.6, 0.1, at), CubeTracker(CUBE, CAMERA), []
 
-    def pose_at(when: float) -> Array:
-        shift = way / np.linalg.norm(way) * REACH_M * np.sin(speed / REACH_M * when)
-        return se3.apply_delta(rest, np.concatenate([shift, np.zeros(3)]))
+    for number in range(count):
+        now = number / RATE
 
-    height, pictures = CAMERA.size[1], range(count)
-    starts = np.linspace(0, height, BANDS + 1).astype(int)
-    for number in pictures:
-        now, light = number / RATE, np.empty((height, CAMERA.size[0]), np.float32)
-        for start, end in itertools.pairwise(starts):
-            late = readout * ((start + end) / 2 / height - 0.5)
-            light[start:end] = scene((CUBE, pose_at(now + late)))[start:end]
-        state = tracker.update(Frame(photograph(light, seed=number), now, number))
-        errors.append(off(state.camera_from_cube, pose_at(now))[0] if state.visible else np.nan)
+        def pose_at(late: float, now: float = now) -> Array:
+            shift = way / np.linalg.norm(way) * REACH_M * np.sin(speed / REACH_M * (now + late))
+            return se3.apply_delta(rest, np.concatenate([shift, np.zeros(3)]))
+
+        state = tracker.update(Frame(rolled(CUBE, pose_at, readout, BANDS, number), now, number))
+        errors.append(off(state.camera_from_cube, pose_at(0.0))[0] if state.visible else np.nan)
     return np.array(errors), tracker.readout
 
 

@@ -3,7 +3,8 @@
 Light is mixed as during an exposure, before the camera converts it to grey values.
 """
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Callable, Sequence
 
 import cv2
 import numpy as np
@@ -72,6 +73,22 @@ def scene(
 def photograph(light: Light, exponent: float = 2.2, noise: float = 1.0, seed: int = 1) -> Picture:
     """Grey values of a camera whose light is the grey value to the power `exponent`, (H, W, 3)."""
     return digitised(grey_values(light, exponent), noise, seed)
+
+
+def rolled(
+    cube: CubeModel, pose_at: Callable[[float], Array], readout: float, bands: int, seed: int
+) -> Picture:
+    """A picture whose rows are exposed one after the other, its middle row at the time 0.
+
+    `pose_at` is where the cube is at a time [s]; each of the `bands` of rows is drawn at once.
+    """
+    height = CAMERA.size[1]
+    starts = np.linspace(0, height, bands + 1).astype(int).tolist()
+    parts = []
+    for start, end in itertools.pairwise(starts):
+        when = readout * ((start + end) / 2 / height - 0.5)
+        parts.append(scene((cube, pose_at(when)))[start:end])
+    return photograph(np.concatenate(parts), seed=seed)
 
 
 def grey_values(light: Light, exponent: float = 2.2) -> Light:

@@ -2,7 +2,7 @@
 
 import time
 
-from cubeling.tracking import CubeState, CubeTracker, Frame
+from cubeling.tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
 from tests.tracking.drawn import Picture
 
 MAX_CALLS = 60
@@ -22,3 +22,10 @@ def show_until_decided(
         if state.verdict != "searching":
             return state, seconds
     raise AssertionError("the search does not end")
+
+
+def watch(picture: Picture, cube: CubeModel, camera: Intrinsics) -> list[CubeState]:
+    """States of a new tracker that has searched a picture, and then sees it once more."""
+    tracker = CubeTracker(cube, camera)
+    first, calls = show_until_decided(tracker, picture)
+    return [first, tracker.update(Frame(picture, len(calls) / 30, len(calls)))]

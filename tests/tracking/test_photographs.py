@@ -15,12 +15,9 @@ from numpy.typing import NDArray
 from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face, aruco_dictionary
 from cubeling.tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
 from cubeling.tracking.geometry import se3
-from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.intrinsics import Intrinsics
-from cubeling.tracking.geometry.state import CubeState
-from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.examples import some
-from tests.tracking.showing import show_until_decided
+from tests.tracking.showing import watch
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -59,16 +56,6 @@ def camera(name: str) -> Intrinsics:
     return Intrinsics(matrix, distortion.ravel(), (640, 480))
 
 
-def watched(
-    picture: Picture, cube: CubeModel, intrinsics: Intrinsics, frames: int = 2
-) -> list[CubeState]:
-    """States of a tracker that sees one picture again and again, once it is searched."""
-    tracker = CubeTracker(cube, intrinsics)
-    first, calls = show_until_decided(tracker, picture)
-    later = range(len(calls), len(calls) + frames - 1)
-    return [first, *(tracker.update(Frame(picture, n / 30, n)) for n in later)]
-
-
 def one_marker(number: int, marker_mm: float) -> CubeModel:
     """A cube of which only the front has a marker."""
     face = {"name": "front", "marker_id": number}
@@ -94,7 +81,7 @@ def test_no_bundled_cube_is_seen_in_any_photograph(path: Path) -> None:
     for name in views:
         for view in views[name]:
             whole = np.ascontiguousarray(view)
-            states = watched(whole, CubeModel.load(name), lens)
+            states = watch(whole, CubeModel.load(name), lens)
             assert not any(state.visible for state in states)
 
 
@@ -106,7 +93,7 @@ def test_markers_on_a_real_sheet_have_the_same_pose() -> None:
     """
     normals, refused = [], []
     for number in (23, 40, 62, 98, 124, 203):
-        state = watched(photograph(SINGLES), one_marker(number, 40.0), camera("params"))[-1]
+        state = watch(photograph(SINGLES), one_marker(number, 40.0), camera("params"))[-1]
         refused.append(state.refused)
         if state.visible:
             assert state.camera_from_cube is not None
@@ -140,7 +127,7 @@ def test_single_markers_of_a_real_board_are_right_or_refused(count: int) -> None
     places, camera_from_board = board()
     for number, corners in itertools.islice(places.items(), count):
         cube = one_marker(number, 20.0)
-        for state in watched(photograph(BOARD), cube, camera("charuco")):
+        for state in watch(photograph(BOARD), cube, camera("charuco")):
             if not state.visible:
                 continue
             assert state.camera_from_cube is not None
@@ -168,7 +155,7 @@ def test_edges_on_a_real_board_agree_with_its_chessboard() -> None:
     steps = []
     for _ in range(12):
         model, body = flat_model(places, random.permutation(17)[:6].tolist())
-        state = watched(photograph(BOARD), model, camera("charuco"))[-1]
+        state = watch(photograph(BOARD), model, camera("charuco"))[-1]
         if state.visible and len(state.faces) >= 4:
             assert state.camera_from_cube is not None
             steps.append(se3.delta(state.camera_from_cube, camera_from_board @ body))

@@ -12,12 +12,10 @@ from cubeling.tracking.cube.faces import face_frame
 from cubeling.tracking.cube.marker import marker_cells
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry import se3
-from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.state import CubeState
-from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.examples import some
-from tests.tracking.showing import show_until_decided
+from tests.tracking.showing import watch
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -124,12 +122,8 @@ def add_sheet(canvas: Picture, pose: Array, cells: dict[tuple[int, int], Cells])
     return canvas
 
 
-def watched(picture: Picture, cube: CubeModel = CUBE, frames: int = 2) -> list[CubeState]:
-    """States of a tracker that sees one picture again and again, once it is searched."""
-    tracker = CubeTracker(cube, CAMERA)
-    first, calls = show_until_decided(tracker, picture)
-    later = range(len(calls), len(calls) + frames - 1)
-    return [first, *(tracker.update(Frame(picture, n / 30, n)) for n in later)]
+def watched(picture: Picture, cube: CubeModel = CUBE) -> list[CubeState]:
+    return watch(picture, cube, CAMERA)
 
 
 def off(state: CubeState, *truths: Array) -> float:

@@ -51,13 +51,8 @@ def _poses(view: View, camera: Array) -> Iterator[tuple[Array, float]]:
     The pose of a single plate is ambiguous: each plate proposes both of its poses, and each
     proposal is refined on the points of all plates.
     """
-    intrinsics = camera_vector.to_intrinsics(camera, (1, 1))
-    matrix, distortion, projection = (
-        intrinsics.matrix,
-        intrinsics.distortion,
-        Projection(intrinsics),
-    )
-    rays = cv2.undistortPoints(view.pixels[:, None], matrix, distortion)[:, 0].astype(np.float64)
+    projection = Projection(camera_vector.to_intrinsics(camera, (1, 1)))
+    rays = projection.rays(view.pixels)
     starts = [
         pose
         for own in (view.plates == number for number in np.unique(view.plates))

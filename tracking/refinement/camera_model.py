@@ -51,6 +51,11 @@ class CameraModel:
     readout: float = 0.0
     """Time that a rolling shutter takes from the first row to the last [s]; 0 while unknown."""
 
+    @property
+    def readout_share(self) -> float:
+        """That time in exposure times; 0 where blur that runs backwards made the exposure 0."""
+        return self.readout / self.exposure if self.exposure > 0 else 0.0
+
 
 @dataclass(frozen=True)
 class BlurObservation:

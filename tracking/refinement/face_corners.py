@@ -9,23 +9,20 @@ from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.detection.markers import Observation
 from cubeling.tracking.geometry.arrays import Array
 from cubeling.tracking.geometry.projection import Projection
-from cubeling.tracking.geometry.robust_statistics import quantile, tukey_weight
-from cubeling.tracking.refinement.edges.edge_fit import FittedEdges
+from cubeling.tracking.geometry.robust_statistics import quantile, robust_weight
+from cubeling.tracking.refinement.edges.edge_fit import MIN_OUTLIER_PX, FittedEdges
+from cubeling.tracking.refinement.lens_estimate import BLUR_ERROR_SHARE, MAX_BLUR_PX
 from cubeling.tracking.refinement.systematic_error import CORNER_ERROR_PX
 
 DETECTED_CORNER_PX = 0.45
 """Error of a corner that OpenCV has detected, along each axis, one standard deviation: how white
 grows over black moves those of each face by another amount."""
 
-MAX_BLUR_PX, BLUR_ERROR_SHARE = 3.0, 0.1
-"""Median motion blur [px] above which edges tell nothing of perspective, and their error as a share
-of it: a rolling shutter slants a moving cube, too."""
-
 MIN_FACE_EDGES = 40
 """Fewer edge points do not show how a face is bent in the picture."""
 
-ROBUST_STEPS, MIN_OUTLIER_PX = 3, 0.1
-"""How often the weights of edges are found, and an error that is no outlier, as in `fit_edges`."""
+ROBUST_STEPS = 3
+"""How often the weights of edges are found, as in `fit_edges`."""
 
 POINTS_ALIKE = 8.0
 """So many points of an edge have their error in common: that of light, print and pixel phase."""
@@ -79,9 +76,7 @@ def fitted_faces(
     blur = quantile(profiles.blur, 0.5)
     if blur > MAX_BLUR_PX:
         return []
-    residual = fit.residual
-    if profiles.bends is not None:
-        residual = residual + profiles.bends[fit.strong] * edges.k1
+    residual = edges.residual_without_k1
     common = float(np.hypot(CORNER_ERROR_PX, BLUR_ERROR_SHARE * blur))
     found = []
     for number, face in enumerate(cube.faces):
@@ -122,9 +117,7 @@ def _robust_solution(
         normal = np.asarray(weighted.T @ rows + prior, np.float64)
         solution = np.asarray(np.linalg.solve(normal, weighted.T @ residual), np.float64)
         off = residual - rows @ solution
-        scale = 1.4826 * quantile(np.abs(off), 0.5)
-        robust = tukey_weight(off, max(4.685 * scale, MIN_OUTLIER_PX))
-        weights = np.asarray(information * robust, np.float64)
+        weights = np.asarray(information * robust_weight(off, MIN_OUTLIER_PX), np.float64)
     return np.asarray(solution, np.float64), np.asarray(np.linalg.inv(normal), np.float64)
 
 

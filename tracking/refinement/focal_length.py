@@ -9,7 +9,7 @@ et al., 2000, section 6.1).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -21,15 +21,15 @@ from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import MIN_DEPTH
 from cubeling.tracking.geometry.robust_statistics import quantile
 from cubeling.tracking.refinement.face_corners import FaceCorners
+from cubeling.tracking.refinement.lens_estimate import FOLD_SPREAD
 
 K1_SPREAD, BLOOM_PX = 0.15, 0.5
 """Standard deviations before anything is measured: of the radial distortion, and of how far white
 grows over black [px]."""
 
-FOLD_SPREAD, PRINT_SPREAD_M, BEND_SPREAD_M = (0.0005, np.deg2rad(0.6)), 0.00012, 0.0002
-"""The same of where a face was glued [m, rad], of a marker's corner on its paper, and of how far
-bent paper lifts it [m]. All pictures have these in common, so many pictures do not make them small.
-"""
+PRINT_SPREAD_M, BEND_SPREAD_M = 0.00012, 0.0002
+"""The same of a marker's corner on its paper, and of how far bent paper lifts it [m]. All pictures
+have these and `FOLD_SPREAD` in common, so many pictures do not make them small."""
 
 NOISE_M = 0.00005
 """What differs of them from picture to picture, as a hand presses on the paper [m]."""
@@ -89,20 +89,30 @@ class FocalLength:
         return bool(wrong or self.deviation < MIN_GAIN * other.deviation)
 
 
+@dataclass(frozen=True, eq=False)
 class _Views:
     """The pictures that are counted, as arrays with room for all faces in each of V pictures."""
 
-    def __init__(self, faces: int) -> None:
-        self.poses = np.empty((0, 4, 4))
-        """Pose of the cube in each, (V, 4, 4)."""
-        self.blooms = np.empty(0)
-        """How far white grows over black in each, (V,) [px]."""
-        self.pixels = np.empty((0, faces, 4, 2))
-        """Corners in the image, (V, F, 4, 2) [px]."""
-        self.inward = np.empty((0, faces, 4, 2))
-        """How white that grows by a pixel moves them, (V, F, 4, 2)."""
-        self.errors = np.empty((0, faces))
-        """Error of the corners of each face [px], infinite where it is not seen, (V, F)."""
+    poses: Array
+    """Pose of the cube in each, (V, 4, 4)."""
+
+    blooms: Array
+    """How far white grows over black in each, (V,) [px]."""
+
+    pixels: Array
+    """Corners in the image, (V, F, 4, 2) [px]."""
+
+    inward: Array
+    """How white that grows by a pixel moves them, (V, F, 4, 2)."""
+
+    errors: Array
+    """Error of the corners of each face [px], infinite where it is not seen, (V, F)."""
+
+    @classmethod
+    def none(cls, faces: int) -> "_Views":
+        """Return no views yet, of a cube with so many faces."""
+        pixels = np.empty((0, faces, 4, 2))
+        return cls(np.empty((0, 4, 4)), np.empty(0), pixels, pixels, np.empty((0, faces)))
 
     def add(self, pose: Array, seen: Sequence[tuple[int, FaceCorners]]) -> "_Views":
         """Return the views with one more."""
@@ -112,13 +122,13 @@ class _Views:
         for number, each in seen:
             pixels[number], inward[number] = each.corners, _inward(each.corners)
             errors[number] = each.error_px
-        more = _Views(faces)
-        more.poses = np.concatenate([self.poses, pose[None]])
-        more.blooms = np.append(self.blooms, 0.0)
-        more.pixels = np.concatenate([self.pixels, pixels[None]])
-        more.inward = np.concatenate([self.inward, inward[None]])
-        more.errors = np.concatenate([self.errors, errors[None]])
-        return more
+        return _Views(
+            np.concatenate([self.poses, pose[None]]),
+            np.append(self.blooms, 0.0),
+            np.concatenate([self.pixels, pixels[None]]),
+            np.concatenate([self.inward, inward[None]]),
+            np.concatenate([self.errors, errors[None]]),
+        )
 
     @property
     def worst(self) -> Array:
@@ -127,26 +137,16 @@ class _Views:
 
     def without(self, numbers: Indices) -> "_Views":
         """Return the views without some of them."""
-        fewer = _Views(self.errors.shape[1])
-        kept = np.setdiff1d(np.arange(len(self.poses)), numbers)
-        fewer.poses, fewer.blooms, fewer.errors = (
-            each[kept] for each in (self.poses, self.blooms, self.errors)
-        )
-        fewer.pixels, fewer.inward = self.pixels[kept], self.inward[kept]
-        return fewer
+        all_of_them = (self.poses, self.blooms, self.pixels, self.inward, self.errors)
+        return _Views(*(np.delete(each, numbers, axis=0) for each in all_of_them))
 
     def move(self, changes: Array) -> "_Views":
         """Return the views with poses and blooms that differ by (V, 7)."""
-        moved = _Views(self.errors.shape[1])
-        moved.pixels, moved.inward, moved.errors = self.pixels, self.inward, self.errors
-        moved.poses = np.stack(
-            [
-                se3.apply_delta(pose, change)
-                for pose, change in zip(self.poses, changes[:, :6], strict=True)
-            ]
-        )
-        moved.blooms = self.blooms + changes[:, 6]
-        return moved
+        poses = [
+            se3.apply_delta(pose, change)
+            for pose, change in zip(self.poses, changes[:, :6], strict=True)
+        ]
+        return replace(self, poses=np.stack(poses), blooms=self.blooms + changes[:, 6])
 
 
 class FocalLengthEstimator:
@@ -179,7 +179,7 @@ class FocalLengthEstimator:
         self._shared = np.zeros(len(self._prior))
         """Logarithm of the scale, k1, how far the principal point is from where it is said to be
         [px], and each corner from its place [m], (4 + 12 F,)."""
-        self._views = _Views(len(cube.faces))
+        self._views = _Views.none(len(cube.faces))
         self.estimate = FocalLength(1.0, intrinsics.focal_deviation)
         """The best estimate."""
 

@@ -141,9 +141,7 @@ class LensEstimator:
         totals = np.bincount(face, weights, self._faces)
         weights = weights * MEASUREMENTS_PER_FACE / (totals[face] * np.square(errors).sum())
         own, shared = fit.rows[used, :8], self._shared_rows(pose, edges.profiles, points)
-        residual = fit.residual[used]
-        if edges.profiles.bends is not None:
-            residual = residual + edges.profiles.bends[points] * edges.k1
+        residual = edges.residual_without_k1[used]
         weighted, own_weighted = shared * weights[:, None], own * weights[:, None]
         normal = own_weighted.T @ own + PRIOR_INFORMATION[:8, :8]
         cross = own_weighted.T @ shared

@@ -10,6 +10,7 @@ from collections import deque
 import numpy as np
 
 from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.robust_statistics import median_with_error
 from cubeling.tracking.refinement.edges.edge_fit import FittedEdges
 from cubeling.tracking.refinement.edges.profiles import row_shares
 
@@ -64,9 +65,7 @@ class ReadoutEstimator:
         ways = (found[forward], found[~forward])
         if min(map(len, ways)) < MIN_SAMPLES_EACH_WAY:
             return
-        median = float(np.median(found))
-        spread = 1.48 * float(np.median(np.abs(found - median)))
-        error = 1.25 * spread / np.sqrt(len(found))
+        median, error = median_with_error(found)
         agree = all(abs(float(np.median(way)) - median) < median / 3 for way in ways)
         if agree and median > max(MIN_READOUT_S, MIN_DEVIATIONS * error):
             self.seconds = min(median, MAX_READOUT_S)

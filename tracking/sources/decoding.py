@@ -78,6 +78,11 @@ def bgr_of(frame: av.VideoFrame, pixel_shape: float = 1.0) -> Image:
     return pixels if matrix is None else _displayed(pixels, bytes(matrix))
 
 
+def reason_of(error: av.FFmpegError) -> str:
+    """Return FFmpeg's message without its numbers, paths and addresses."""
+    return (error.strerror or type(error).__name__).lower()
+
+
 def pixel_shape_of(stream: VideoStream) -> float:
     """Width of a pixel ÷ its height, as the file states it; 1 where it states none or nonsense."""
     ratio = stream.sample_aspect_ratio or Fraction(1)

@@ -7,7 +7,7 @@ import av
 
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.arrays import Image
-from cubeling.tracking.sources.decoding import bgr_of, pixel_shape_of
+from cubeling.tracking.sources.decoding import bgr_of, pixel_shape_of, reason_of
 from cubeling.tracking.sources.device import Clock, DeviceSetting
 from cubeling.tracking.sources.live import LiveSource
 
@@ -66,7 +66,7 @@ class _RtspStream:
             )
         except av.FFmpegError as error:
             raise TrackingError(
-                f"cannot open {name} ({_reason(error)}): check address, name and password"
+                f"cannot open {name} ({reason_of(error)}): check address, name and password"
             ) from error
         if not self._container.streams.video:
             self._container.close()
@@ -85,7 +85,7 @@ class _RtspStream:
         except StopIteration as error:
             raise TrackingError(f"{self._name} ended its stream") from error
         except av.FFmpegError as error:
-            raise TrackingError(f"{self._name} failed: {_reason(error)}") from error
+            raise TrackingError(f"{self._name} failed: {reason_of(error)}") from error
         return bgr_of(frame, self._pixel_shape)
 
     def interrupt(self) -> None:
@@ -94,8 +94,3 @@ class _RtspStream:
     def close(self) -> None:
         """Close the session."""
         self._container.close()
-
-
-def _reason(error: av.FFmpegError) -> str:
-    """Return FFmpeg's message without its numbers and addresses."""
-    return (error.strerror or type(error).__name__).lower()

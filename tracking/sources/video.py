@@ -10,7 +10,7 @@ from cubeling.files import FileKind
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.sources.base import StoredFrames, Timeline, readable_frames
-from cubeling.tracking.sources.decoding import bgr_of, pixel_shape_of
+from cubeling.tracking.sources.decoding import bgr_of, pixel_shape_of, reason_of
 from cubeling.tracking.sources.device import Clock
 
 VIDEO_FILE = FileKind(
@@ -62,8 +62,8 @@ class VideoSource(StoredFrames):
     def _decode_frames(self, container: InputContainer) -> Generator[Frame, None, None]:
         timeline, start, count = Timeline(), None, 0
         stream = container.streams.video[0]
-        # AVI has timestamps of packets only, and B frames are decoded in another order.
         pixel_shape = pixel_shape_of(stream)
+        # AVI has timestamps of packets only, and B frames are decoded in another order.
         untimed = container.format.name == "avi" and stream.codec_context.has_b_frames
         try:
             for picture in container.decode(stream):
@@ -78,7 +78,7 @@ class VideoSource(StoredFrames):
         except av.FFmpegError as error:
             read = readable_frames(count)
             raise TrackingError(
-                f"the video '{self._path}' is damaged ({_reason(error)}): {read}"
+                f"the video '{self._path}' is damaged ({reason_of(error)}): {read}"
             ) from error
 
 
@@ -94,13 +94,8 @@ def _open(path: Path) -> InputContainer:
             f"file:{path}", metadata_errors="replace"
         )
     except av.FFmpegError as error:
-        raise TrackingError(f"'{path}' is not a video: {_reason(error)}") from error
+        raise TrackingError(f"'{path}' is not a video: {reason_of(error)}") from error
     if not container.streams.video:
         container.close()
         raise TrackingError(f"'{path}' is not a video: it has no video stream")
     return container
-
-
-def _reason(error: av.FFmpegError) -> str:
-    """Return FFmpeg's message without its numbers and paths."""
-    return (error.strerror or type(error).__name__).lower()

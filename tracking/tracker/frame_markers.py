@@ -24,8 +24,7 @@ class FrameMarkers:
     def __init__(self, frame: Frame, detectors: Mapping[str, MarkerDetector]) -> None:
         self.frame = frame
         """The frame."""
-        self.detectors = detectors
-        """What reads the markers, by the name of their dictionary."""
+        self._detectors = detectors
         self._read: dict[tuple[str, Pass], list[Marker]] = {}
 
     @cached_property
@@ -41,7 +40,7 @@ class FrameMarkers:
         return self._read[key]
 
     def _detect(self, dictionary: str, by: Pass) -> list[Marker]:
-        detector = self.detectors[dictionary]
+        detector = self._detectors[dictionary]
         if by == "first window":
             return detector.detect(self.grey)
         if by == "other windows":

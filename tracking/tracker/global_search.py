@@ -66,8 +66,8 @@ reading so many pixels for partly hidden markers. `make bench-photographs` print
 class Search:
     """A picture that is searched, in one call or in several."""
 
-    frame: Frame
-    """The frame that is searched, which need not be the newest."""
+    markers: FrameMarkers
+    """What is read in the frame that is searched, which need not be the newest."""
 
     expected: Array | None
     """The predicted pose, (4, 4); None without one."""
@@ -89,6 +89,11 @@ class Search:
 
     half_done: bool = False
     """Whether another lean of what was found has still to be compared."""
+
+    @property
+    def frame(self) -> Frame:
+        """The frame that is searched."""
+        return self.markers.frame
 
     @property
     def decided(self) -> bool:
@@ -117,7 +122,7 @@ class Trial:
     cost: float
     """How many pixels could be read in its time."""
 
-    run: Callable[[Search, FrameMarkers], Search]
+    run: Callable[[Search], Search]
     """Does it, and returns what the search has come to."""
 
 
@@ -156,22 +161,22 @@ class GlobalDetector:
         # A bool as an index: small images skip the pass at half size.
         passes = passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]
         if last is not None and _show_the_same(last.frame.image, markers.frame.image):
-            return self._go_on(last, FrameMarkers(last.frame, markers.detectors))
-        new = Search(markers.frame, expected, tone)
+            return self._go_on(last)
+        new = Search(markers, expected, tone)
         plans: list[list[Trial]] = []
         for by in passes if last is None else passes[:1]:
             read = markers_of(self._cube, markers.read(self._cube.dictionary, by))
-            new, plan = self._try_markers(new, markers, read)
+            new, plan = self._try_markers(new, read)
             if new.flat or new.found:
                 return new
             # The corners of the later pass are better ones; the others are a second chance.
             plans = [plan, *plans]
         if last is not None:
-            return self._go_on(last, FrameMarkers(last.frame, markers.detectors))
+            return self._go_on(last)
         rest = self._read_hidden if thorough else self._read_others
         trials = [trial for plan in plans for trial in plan]
         new = new.try_first([*trials, Trial(markers.grey.size, rest), Trial(0.0, self._try_blur)])
-        return self._go_on(new, markers)
+        return self._go_on(new)
 
     def holds(self, search: Search, frame: Frame) -> bool:
         """Whether a later frame shows the same where a search has found the cube."""
@@ -184,21 +189,19 @@ class GlobalDetector:
         before, now = (each.image[top:bottom, left:right] for each in (search.frame, frame))
         return _show_the_same(before, now)
 
-    def _go_on(self, search: Search, markers: FrameMarkers) -> Search:
+    def _go_on(self, search: Search) -> Search:
         """Try on, at least once, and until the budget is spent."""
-        small = markers.grey.size <= SMALL_PICTURE_PX
-        left = SMALL_BUDGET_PX if small else BUDGET_PICTURES * markers.grey.size
+        size = search.markers.grey.size
+        left = SMALL_BUDGET_PX if size <= SMALL_PICTURE_PX else BUDGET_PICTURES * size
         while not search.decided:
             trial, *others = search.trials
-            search = trial.run(replace(search, trials=tuple(others)), markers)
+            search = trial.run(replace(search, trials=tuple(others)))
             left -= trial.cost
             if search.trials and search.trials[0].cost > max(left, 0.0):
                 break
         return search
 
-    def _try_markers(
-        self, search: Search, markers: FrameMarkers, read: list[Observation]
-    ) -> tuple[Search, list[Trial]]:
+    def _try_markers(self, search: Search, read: list[Observation]) -> tuple[Search, list[Trial]]:
         """Take the pose that several faces agree on; else return how to compare the cells."""
         if not read:
             return search, []
@@ -206,7 +209,7 @@ class GlobalDetector:
         if lie_flat(read):
             return replace(search, flat=True, found=()), []
         solutions = self._poses.solve(read, search.expected)
-        agreed = self._poses.find_agreed(markers.grey, solutions, read, search.tone)
+        agreed = self._poses.find_agreed(search.markers.grey, solutions, read, search.tone)
         if agreed is not None:
             return search.find([agreed]), []
         plan = [self._comparison(solutions, read, mirrored=False)] if solutions else []
@@ -230,7 +233,6 @@ class GlobalDetector:
         mirrored: bool,
         run: CellRun | None,
         search: Search,
-        markers: FrameMarkers,
     ) -> Search:
         """Take a step to compare the cells at the first of some poses; the others follow.
 
@@ -238,7 +240,7 @@ class GlobalDetector:
         that.
         """
         first, *others = solutions
-        found = self._poses.compare_cells(markers.grey, first, read, search.tone, run)
+        found = self._poses.compare_cells(search.markers.grey, first, read, search.tone, run)
         if isinstance(found, CellRun):
             ahead = self._comparison(solutions, read, mirrored=mirrored, run=found)
             return replace(search, half_done=True).try_first([ahead])
@@ -250,43 +252,43 @@ class GlobalDetector:
             return search
         return search.try_first([self._comparison(others, read, mirrored=mirrored)])
 
-    def _read_others(self, search: Search, markers: FrameMarkers) -> Search:
+    def _read_others(self, search: Search) -> Search:
         """Read the markers that OpenCV finds with more effort."""
-        read = markers_of(self._cube, markers.read(self._cube.dictionary, "other windows"))
-        return self._try_more(search, markers, read)
+        read = search.markers.read(self._cube.dictionary, "other windows")
+        return self._try_more(search, markers_of(self._cube, read))
 
-    def _read_hidden(self, search: Search, markers: FrameMarkers) -> Search:
+    def _read_hidden(self, search: Search) -> Search:
         """Read partly hidden markers, in a low image at twice its size at once.
 
         There the print of a hidden marker has too few pixels a cell.
         """
-        small = len(markers.grey) < MIN_SINGLE_HEIGHT_PX
-        read = self._hidden.detect(markers.grey, doubled=small)
-        search = self._try_more(search, markers, read)
+        grey = search.markers.grey
+        small = len(grey) < MIN_SINGLE_HEIGHT_PX
+        search = self._try_more(search, self._hidden.detect(grey, doubled=small))
         if small or not search.seen:
             return search
-        left, top, right, bottom = region = _around(search.seen, markers.grey)
+        left, top, right, bottom = region = _around(search.seen, grey)
         area = (right - left) * (bottom - top)
-        if area > MAX_SMALL_SHARE * markers.grey.size:
+        if area > MAX_SMALL_SHARE * grey.size:
             return search
         closer = Trial(4.0 * area, partial(self._read_small, region))
         # Before the blur, which is the last.
         return replace(search, trials=(*search.trials[:-1], closer, *search.trials[-1:]))
 
-    def _read_small(self, region: Region, search: Search, markers: FrameMarkers) -> Search:
-        read = self._hidden.detect(markers.grey, region, doubled=True)
-        return self._try_more(search, markers, read)
+    def _read_small(self, region: Region, search: Search) -> Search:
+        read = self._hidden.detect(search.markers.grey, region, doubled=True)
+        return self._try_more(search, read)
 
-    def _try_more(self, search: Search, markers: FrameMarkers, read: list[Observation]) -> Search:
+    def _try_more(self, search: Search, read: list[Observation]) -> Search:
         """Try markers of a thorough pass, unless their faces were tried and nothing was proved."""
         tried = {each.face.name for each in search.seen}
         hopeless = search.found and not any(each.certain for each in search.found)
-        search, plan = self._try_markers(search, markers, read)
+        search, plan = self._try_markers(search, read)
         if hopeless and tried.issuperset(each.face.name for each in read):
             return search
         return search.try_first(plan)
 
-    def _try_blur(self, search: Search, markers: FrameMarkers) -> Search:
+    def _try_blur(self, search: Search) -> Search:
         """Plan to align the blurred image at poses that rest on corners alone."""
         # A single face that is blurred does not tell its lean.
         starts = tuple(each.camera_from_cube for each in search.found if not each.lone)
@@ -310,7 +312,6 @@ class GlobalDetector:
         best: Alignment | None,
         found: tuple[Candidate, ...],
         search: Search,
-        markers: FrameMarkers,
     ) -> Search:
         """Align the image at the first pose as blurred in one direction; the others follow."""
         patch = self._footprint.crop(search.frame.image, starts[0], search.tone)

@@ -85,8 +85,7 @@ class LocalTracker:
         # Blur wider than that has no edge profile to fit; the image is aligned as a whole.
         if self._footprint.blur_extent(blur_motion(start)) >= MAX_EDGE_BLUR_CELLS:
             return None
-        rolling = camera.readout / camera.exposure
-        found = self._edges.search(patch, start, blur_motion, rolling)
+        found = self._edges.search(patch, start, blur_motion, camera.readout_share)
         if found is None or found.edges is None:
             return None
         pose, assumed = found.camera_from_cube, found.edges.profiles.blur_motion
@@ -96,7 +95,8 @@ class LocalTracker:
         if self._footprint.blur_extent(measured - assumed) < MAX_MOTION_SURPRISE_CELLS:
             return found
         # The first result where the second search fails: it was good, if not the best.
-        return self._edges.search(patch, pose, lambda _: measured, rolling) or found
+        again = self._edges.search(patch, pose, lambda _: measured, camera.readout_share)
+        return again or found
 
     def _by_blur(
         self, patch: Patch, track: Track, prediction: Prediction, camera: CameraModel

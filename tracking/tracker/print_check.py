@@ -20,6 +20,7 @@ from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.image_region import Patch
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import Projection
+from cubeling.tracking.geometry.robust_statistics import median_with_error
 from cubeling.tracking.refinement.edges.edge_refinement import EdgeRefiner
 from cubeling.tracking.refinement.footprint import Footprint
 
@@ -72,7 +73,7 @@ class PrintCheck:
         self._cube = cube
         self._projection = Projection(intrinsics)
         self._detector = MarkerDetector(cube.dictionary)
-        self._solvers: dict[PrintFault | None, CornerPoseSolver] = {}
+        self._printed: dict[PrintFault | None, tuple[CubeModel, CornerPoseSolver]] = {}
         self._refiners: dict[int, EdgeRefiner] = {}
         self._footprint = Footprint(cube, self._projection)
         self._votes: Counter[PrintFault] = Counter()
@@ -91,13 +92,9 @@ class PrintCheck:
         for fault, votes in self._votes.most_common(1):
             if votes >= MIN_LOOKS and not self._confirmed & set(fault.faces or ("all",)):
                 return fault
-        sizes = np.array(self._sizes)
-        if len(sizes) < MIN_SIZE_LOOKS:
+        if len(self._sizes) < MIN_SIZE_LOOKS:
             return None
-        size = float(np.median(sizes))
-        # 1.48 makes the median of distances a standard deviation, 1.25 is the price of a median.
-        spread = 1.48 * float(np.median(np.abs(sizes - size)))
-        error = 1.25 * spread / np.sqrt(len(sizes))
+        size, error = median_with_error(np.array(self._sizes))
         if abs(size - 1) < MIN_SIZE_ERROR + error or error > MAX_SIZE_ERROR_OF_MEDIAN:
             return None
         return PrintFault("size", marker_mm=round(1000 * self._cube.marker_size * size, 1))
@@ -152,10 +149,10 @@ class PrintCheck:
 
     def _solve(self, fault: PrintFault | None, seen: Sequence[Observation]) -> CornerPose | None:
         """Return the pose of the cube with a fault if it explains all markers; None if not."""
-        cube = self._cube if fault is None else cube_with(self._cube, fault)
-        if fault not in self._solvers:
-            self._solvers[fault] = CornerPoseSolver(cube, self._projection)
-        return _explained(self._solvers[fault], cube, seen)
+        if fault not in self._printed:
+            cube = self._cube if fault is None else cube_with(self._cube, fault)
+            self._printed[fault] = cube, CornerPoseSolver(cube, self._projection)
+        return _explained(*self._printed[fault], seen)
 
     def _measure_size(self, grey: Image, seen: Sequence[Observation]) -> None:
         """Measure the size of the markers on their faces, by all edges in two and more of these.
@@ -167,8 +164,8 @@ class PrintCheck:
             return
         found = [
             (solved.error, share, solved.camera_from_cube)
-            for share, (cube, solver) in zip(SIZES, self._sized, strict=True)
-            if (solved := _explained(solver, cube, seen)) is not None
+            for share, sized in zip(SIZES, self._sized, strict=True)
+            if (solved := _explained(*sized, seen)) is not None
         ]
         if not found:
             return
@@ -232,7 +229,7 @@ def with_markers(cube: CubeModel, share: float) -> CubeModel:
 
 
 def _explained(
-    solver: CornerPoseSolver, cube: CubeModel, seen: Sequence[Observation]
+    cube: CubeModel, solver: CornerPoseSolver, seen: Sequence[Observation]
 ) -> CornerPose | None:
     """Return a pose of a cube that explains all markers, if there is one."""
     faces = {face.marker_id: face for face in cube.faces}

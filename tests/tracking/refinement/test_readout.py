@@ -1,6 +1,5 @@
 """A rolling shutter: its time is measured on a cube that moves, and its slant taken out."""
 
-import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -13,22 +12,11 @@ from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.edges.edge_refinement import EdgeRefiner
 from cubeling.tracking.refinement.footprint import Footprint
 from cubeling.tracking.refinement.readout import MIN_SAMPLES_EACH_WAY, ReadoutEstimator
-from tests.tracking.drawn import CAMERA, Array, Picture, held, off, photograph, scene
+from tests.tracking.drawn import CAMERA, Array, held, off, rolled
 
 CUBE = CubeModel.load("companion")
 READOUT_S = 0.025
 TONE = np.asarray(255 * (np.arange(256) / 255) ** 2.2, np.float32)
-
-
-def rolled(pose_at: Callable[[float], Array], readout: float, bands: int, seed: int) -> Picture:
-    """A picture whose rows are exposed one after the other, its middle row at the time 0."""
-    height = CAMERA.size[1]
-    starts = np.linspace(0, height, bands + 1).astype(int).tolist()
-    parts = []
-    for start, end in itertools.pairwise(starts):
-        when = readout * ((start + end) / 2 / height - 0.5)
-        parts.append(scene((CUBE, pose_at(when)))[start:end])
-    return photograph(np.concatenate(parts), seed=seed)
 
 
 def swept(speed: float, y: float) -> Callable[[float], Array]:
@@ -45,7 +33,7 @@ def learned(readout: float) -> ReadoutEstimator:
         speed = 0.5 if number % 2 else -0.5
         pose_at = swept(speed, 0.01 * (number // 2 - 2))
         patch = footprint.crop(
-            rolled(pose_at, readout, 16 if readout else 1, number), pose_at(0.0), TONE
+            rolled(CUBE, pose_at, readout, 16 if readout else 1, number), pose_at(0.0), TONE
         )
         assert isinstance(patch, Patch)
         found = refiner.refine(patch, pose_at(0.0))
@@ -69,7 +57,7 @@ def test_the_slant_of_a_known_shutter_is_taken_out(speed: float) -> None:
     projection = Projection(CAMERA)
     pose_at, exposure = swept(speed, 0.06), 0.001
     motion = np.array([speed, 0, 0, 0, 0, speed]) * exposure
-    picture = rolled(pose_at, READOUT_S, 48, 1)
+    picture = rolled(CUBE, pose_at, READOUT_S, 48, 1)
     patch = Footprint(CUBE, projection).crop(picture, pose_at(0.0), TONE)
     assert patch is not None
     errors = []
@@ -93,7 +81,7 @@ def test_a_cube_that_is_waved_before_a_rolling_shutter_is_where_it_is() -> None:
             x = 0.12 * np.sin(0.5 / 0.12 * (now + when))
             return se3.apply_delta(rest, np.array([x, 0, 0, 0, 0, 0]))
 
-        state = tracker.update(Frame(rolled(pose_at, READOUT_S, 24, number), now, number))
+        state = tracker.update(Frame(rolled(CUBE, pose_at, READOUT_S, 24, number), now, number))
         assert state.visible
         errors.append(off(state.camera_from_cube, pose_at(0.0))[0])
     assert np.median(errors[:10]) > 3

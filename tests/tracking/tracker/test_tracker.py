@@ -14,6 +14,7 @@ from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.gestures.gestures import CubeGestures
 from cubeling.tracking.gestures.table import SIDE_NORMALS
+from cubeling.tracking.refinement import camera_model
 from cubeling.tracking.synthetic import open_synthetic
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.examples import some
@@ -124,6 +125,16 @@ def test_of_two_equal_cubes_the_followed_one_stays() -> None:
     tracker = CubeTracker(CUBE, CAMERA)
     show(draw(here), 0.0, tracker)
     assert off(show(draw(there, here), 1 / 30, tracker).camera_from_cube, here)[0] < 1
+
+
+def test_a_cube_is_followed_while_its_exposure_is_taken_for_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Blur that seems to run against the motion leaves an exposure of 0."""
+    monkeypatch.setattr(camera_model, "FIRST_EXPOSURE_S", 0.0)
+    tracker, picture = CubeTracker(CUBE, CAMERA), draw(held(0.5, 0.6, 0.1))
+    assert show(picture, 0.0, tracker).visible
+    assert show(picture, 1 / 30, tracker).visible
 
 
 def test_a_jump_needs_a_second_frame() -> None:

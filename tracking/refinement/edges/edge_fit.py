@@ -7,7 +7,7 @@ import numpy as np
 
 from cubeling.tracking.geometry.arrays import Array, Flags, Indices, run_starts
 from cubeling.tracking.geometry.image_region import Patch
-from cubeling.tracking.geometry.robust_statistics import quantile, tukey_weight
+from cubeling.tracking.geometry.robust_statistics import quantile, robust_weight
 from cubeling.tracking.refinement.edges.profiles import (
     EdgeMeasurements,
     EdgeProfiles,
@@ -34,6 +34,9 @@ of that of good edges."""
 
 MIN_EDGE_POINTS = 36
 """Fewer edge points than this do not determine a pose."""
+
+MIN_OUTLIER_PX = 0.1
+"""An edge that is off by less than this is no outlier."""
 
 INDEPENDENT_SHARE = 0.5
 """Share of the covariance of independent residuals to add: a few lines show too little spread."""
@@ -86,6 +89,13 @@ class FittedEdges:
         """Radial distortion beyond that of the intrinsics, as far as this image tells it."""
         return self.profiles.k1 + float(self.fit.solution[8:].sum())
 
+    @property
+    def residual_without_k1(self) -> Array:
+        """Residuals of the same pose through the lens that the intrinsics claim, (M,) [px]."""
+        if self.profiles.bends is None:
+            return self.fit.residual
+        return self.fit.residual + self.profiles.bends[self.fit.strong] * self.k1
+
 
 def fit_edges(
     patch: Patch, profiles: EdgeProfiles, shifts: Array, width_px: float, steps: int = 3
@@ -120,10 +130,7 @@ def fit_edges(
         _, solved = cv2.solve(normal, right, flags=cv2.DECOMP_CHOLESKY)
         solution = np.asarray(solved, np.float64)[:, 0]
         residual = np.asarray(offset - solution @ columns, np.float64)
-        # The median of absolute values as a standard deviation (Gaussian), and Tukey's constant for
-        # 95 % efficiency; below 0.1 px no residual is an outlier.
-        scale = 1.4826 * quantile(np.abs(residual), 0.5)
-        robust = tukey_weight(residual, max(4.685 * scale, 0.1))
+        robust = robust_weight(residual, MIN_OUTLIER_PX)
         weights = information * robust
     return EdgeFit(measured, solution, strong, columns.T, weights, robust, residual, normal)
 
