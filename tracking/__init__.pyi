@@ -12,6 +12,7 @@ from cubeling.tracking.cube.model import (
     Face as Face,
     bundled_cubes as bundled_cubes,
     face_corners as face_corners,
+    side_of as side_of,
 )
 from cubeling.tracking.cube.printing.sheet import write_sheet as write_sheet
 from cubeling.tracking.detection.markers import MarkerDetector as MarkerDetector

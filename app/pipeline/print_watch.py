@@ -8,6 +8,7 @@ from cubeling.tracking import (
     PrintCheck,
     PrintFault,
     cube_with,
+    side_of,
 )
 
 LOOK_EVERY_S, LOOK_AFTER_S = 1.0, 1.0
@@ -45,7 +46,7 @@ class PrintWatch:
         now = frame.timestamp
         if state.visible or self._unseen_since is None:
             self._unseen_since = now
-        several = len({face.partition("/")[0] for face in state.faces}) > 1
+        several = len(set(map(side_of, state.faces))) > 1
         due = several and self._check.agreed < ENOUGH_LOOKS
         due |= now - self._unseen_since >= LOOK_AFTER_S
         if due and now - self._looked_at >= LOOK_EVERY_S:
