@@ -141,7 +141,7 @@ def never_refused(probe: Probe) -> None:
         for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
             if count:
                 probe.send(m.Play(probe.next_number(), item, count - 1))
-        if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE and welcome.joints:
+        if probe.takes_move and welcome.joints:
             angles = probe.beat("HELLO").joints
             probe.send(m.Move(probe.next_number(), 1.0, 0, 1, angles))
         probe.express(0.0, 0.0)
@@ -238,7 +238,7 @@ def refused_commands(probe: Probe) -> Iterator[tuple[m.Command, int]]:
             yield m.Express(probe.next_number(), -0.5, 0.5, mood), m.RESULT_REFUSED
     for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
         yield m.Play(probe.next_number(), item, count), m.RESULT_REFUSED
-    if probe.version < 3 or not welcome.abilities & m.ABILITY_MOVE:
+    if not probe.takes_move:
         return
     known = (1 << welcome.joints) - 1
     angles = probe.beat("HELLO").joints
