@@ -138,15 +138,22 @@ def with_toe_ends(character: Character) -> Character:
 
 def _leaders(skeleton: Skeleton, anatomy: Anatomy) -> Iterator[tuple[int, int]]:
     """Yield each detached joint and the joint that is to lead it."""
-    joints = anatomy.joints
+    joints, parents = anatomy.joints, [*skeleton.parents]
+
+    def with_ancestors(joint: int) -> Iterator[int]:
+        while joint >= 0:
+            yield joint
+            joint = parents[joint]
+
     wanted = [(s + part, tuple(s + a for a in above)) for part, above in _LIMBS for s in SIDES]
     wanted += [("head", _TRUNK), *((f"{side}Eye", ("head",)) for side in SIDES)]
     for part, above in wanted:
         joint = joints.get(part)
         leader = next((joints[name] for name in above if name in joints), None)
-        if joint is None or leader is None or leader in skeleton.with_ancestors([joint]):
+        if joint is None or leader is None or leader in with_ancestors(joint):
             continue
-        if joint not in skeleton.with_ancestors([leader]):  # else it would lead itself
+        if joint not in with_ancestors(leader):  # else it would lead itself
+            parents[joint] = leader  # the next ones see it, or two could lead each other
             yield joint, leader
 
 
