@@ -11,6 +11,7 @@ import numpy as np
 
 from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import Character
+from cubeling.characters.model.limb_ends import with_more_joints
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
@@ -115,25 +116,11 @@ def with_toe_ends(character: Character) -> Character:
         places[leg.foot, :3, :3].T @ rotations.rotate(back, rig.sole(leg).ball)
         for leg in feet.values()
     ]
-    count = len(feet)
-    unbound, unturned = np.tile(np.eye(4), (count, 1, 1)), np.tile(rotations.IDENTITY, (count, 1))
-    return replace(
-        character,
-        skeleton=Skeleton(
-            (*skeleton.names, *feet),
-            (*skeleton.parents, *(leg.foot for leg in feet.values())),
-            Pose(
-                np.concatenate([rest.translations, offsets]),
-                np.concatenate([rest.rotations, unturned]),
-                None,
-                rest.morphs,
-            ),
-        ),
-        meshes=tuple(
-            replace(mesh, inverse_bind=np.concatenate([mesh.inverse_bind, unbound]))
-            for mesh in character.meshes
-        ),
+    parents = [leg.foot for leg in feet.values()]
+    longer, meshes = with_more_joints(
+        skeleton, character.meshes, [*feet], parents, np.array(offsets)
     )
+    return replace(character, skeleton=longer, meshes=meshes)
 
 
 def _leaders(skeleton: Skeleton, anatomy: Anatomy) -> Iterator[tuple[int, int]]:
