@@ -103,8 +103,7 @@ def _vertices_of_joints(
     vertices: list[list[Array]] = [[] for _ in skeleton.names]
     for mesh in meshes:
         points = np.concatenate([mesh.positions, np.ones((len(mesh.positions), 1))], axis=1)
-        strongest = np.argmax(mesh.weights, axis=1)
-        mover = np.take_along_axis(mesh.joints, strongest[:, None], axis=1)[:, 0]
+        mover = mesh.movers
         for joint in np.unique(mover):
             of_joint = points[mover == joint] @ (rest[joint] @ mesh.inverse_bind[joint]).T
             vertices[joint].append(of_joint[:, :3])

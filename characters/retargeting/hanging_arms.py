@@ -143,14 +143,8 @@ def _trunk_joints(rig: Rig) -> list[int]:
 
 def _placed_skin(rig: Rig, placements: Array) -> tuple[Array, NDArray[np.intp]]:
     """Return the vertices in the common axes, (n, 3) [m], and the joint that moves each most."""
-    points: list[Array] = []
-    movers: list[NDArray[np.intp]] = []
-    for mesh in rig.meshes:
-        points.append(in_common_axes(rig, skin(mesh, placements)))
-        strongest = np.argmax(mesh.weights, axis=1)
-        mover = np.take_along_axis(mesh.joints, strongest[:, None], axis=1)[:, 0]
-        movers.append(mover.astype(np.intp))
-    return np.concatenate(points), np.concatenate(movers)
+    points = np.concatenate([skin(mesh, placements) for mesh in rig.meshes])
+    return in_common_axes(rig, points), np.concatenate([mesh.movers for mesh in rig.meshes])
 
 
 @dataclass(frozen=True)
