@@ -1,6 +1,12 @@
 """Exceptions and warnings of `characters`."""
 
+from collections.abc import Collection
+from itertools import islice
+
 from cubeling.bad_input import BadInputError
+
+MAX_LISTED = 12
+"""Names that a message lists."""
 
 
 class CharacterError(BadInputError):
@@ -9,3 +15,12 @@ class CharacterError(BadInputError):
 
 class CharacterWarning(UserWarning):
     """Bad input that was repaired. The message says what was wrong, where, and what was done."""
+
+
+def listed(names: Collection[str]) -> str:
+    """Return names for a message: "a, b, c", and "…" for what is more than `MAX_LISTED`.
+
+    >>> listed(["start", "end"]), listed([]), listed("abcdefghijklmn")[-7:]
+    ('start, end', '', 'k, l, …')
+    """
+    return ", ".join(islice(names, MAX_LISTED)) + (", …" if len(names) > MAX_LISTED else "")

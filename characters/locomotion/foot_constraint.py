@@ -81,7 +81,7 @@ class FootOffset:
 
     @property
     def length(self) -> float:
-        """Horizontal length [m]."""
+        """How far the ball is shown from where the motion has it, over the ground [m]."""
         return math.hypot(self.x, self.z)
 
 

@@ -48,15 +48,35 @@ def with_limb_ends(
             offsets.append(step)
     if not offsets:
         return skeleton, tuple(meshes), dict(clips)
-    more = np.array(offsets)
-    unbound = np.tile(np.eye(4), (len(more), 1, 1))
+    more, count = np.array(offsets), len(skeleton)
     return (
-        Skeleton(tuple(names), tuple(parents), _with_joints(skeleton.rest, more)),
+        *with_more_joints(skeleton, meshes, names[count:], parents[count:], more),
+        {n: replace(clip, poses=_with_joints(clip.poses, more)) for n, clip in clips.items()},
+    )
+
+
+def with_more_joints(
+    skeleton: Skeleton,
+    meshes: Sequence[Mesh],
+    names: Sequence[str],
+    parents: Sequence[int],
+    offsets: Array,
+) -> tuple[Skeleton, tuple[Mesh, ...]]:
+    """Return a skeleton with more joints at the end, and meshes, of which they move nothing.
+
+    `offsets` (n, 3) are those from their parents at rest [m].
+    """
+    unbound = np.tile(np.eye(4), (len(offsets), 1, 1))
+    return (
+        Skeleton(
+            (*skeleton.names, *names),
+            (*skeleton.parents, *parents),
+            _with_joints(skeleton.rest, offsets),
+        ),
         tuple(
             replace(mesh, inverse_bind=np.concatenate([mesh.inverse_bind, unbound]))
             for mesh in meshes
         ),
-        {n: replace(clip, poses=_with_joints(clip.poses, more)) for n, clip in clips.items()},
     )
 
 
@@ -83,8 +103,7 @@ def _vertices_of_joints(
     vertices: list[list[Array]] = [[] for _ in skeleton.names]
     for mesh in meshes:
         points = np.concatenate([mesh.positions, np.ones((len(mesh.positions), 1))], axis=1)
-        strongest = np.argmax(mesh.weights, axis=1)
-        mover = np.take_along_axis(mesh.joints, strongest[:, None], axis=1)[:, 0]
+        mover = mesh.movers
         for joint in np.unique(mover):
             of_joint = points[mover == joint] @ (rest[joint] @ mesh.inverse_bind[joint]).T
             vertices[joint].append(of_joint[:, :3])

@@ -155,3 +155,10 @@ class Mesh:
 
     morphs: tuple[Morph, ...] = ()
     """Morph targets, each with as many vertices as the mesh."""
+
+    @property
+    def movers(self) -> NDArray[np.intp]:
+        """The joint that moves each vertex most, (vertices,)."""
+        strongest = np.argmax(self.weights, axis=1)
+        joints = np.take_along_axis(self.joints, strongest[:, None], axis=1)[:, 0]
+        return joints.astype(np.intp)

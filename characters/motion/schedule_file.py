@@ -7,16 +7,16 @@ The two appendices spell some things differently (erratum 12); both spellings ar
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import islice
 
 import numpy as np
 
-from cubeling.characters.errors import CharacterError
+from cubeling.characters.errors import CharacterError, listed
 from cubeling.characters.motion.curves import Adsr, Ease, FadeCurve, Product, Weight
 from cubeling.characters.motion.modifiers import Filtered, PoseFilter, Stretch, TimeWindow
 from cubeling.characters.motion.motion import Motion
 from cubeling.characters.motion.schedule import Action, Schedule
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.masks import subtree
 from cubeling.characters.skeleton.pose import Array, Skeleton
 from cubeling.characters.xml_elements import XmlElement, XmlLimits, read_xml
 
@@ -59,9 +59,6 @@ SCOPES: dict[str, tuple[str, ...]] = {
     "legs": ("leftUpperLeg", "rightUpperLeg"),
 }
 """What a scope covers: these body parts and all joints below them; "all" covers every joint."""
-
-MAX_LISTED = 12
-"""Names of actions that a message lists."""
 
 Opener = Callable[[str], Motion]
 """Opens the motion of a name that a schedule gives."""
@@ -167,8 +164,7 @@ class ScheduleReader:
     def _activate(self, element: XmlElement, pool: Mapping[str, Action]) -> Action:
         name, start = self._name(element), self._number(element, "offset", 0.0)
         if name not in pool:
-            known = ", ".join(islice(pool, MAX_LISTED)) + (", …" if len(pool) > MAX_LISTED else "")
-            raise self._error(element, f"no action {name!r}; there are {known or 'none'}")
+            raise self._error(element, f"no action {name!r}; there are {listed(pool) or 'none'}")
         action = pool[name]
         return replace(action, start=start)
 
@@ -286,11 +282,10 @@ class ScheduleReader:
 
     def _joints_in(self, scope: str) -> list[int]:
         """Return the joints that a scope covers."""
-        everything = list(range(len(self._skeleton)))
         if scope == "all":
-            return everything
-        tops = {self._anatomy.joint(part) for part in SCOPES[scope]} - {None}
-        return [j for j in everything if tops & {j, *self._skeleton.with_ancestors([j])}]
+            return list(range(len(self._skeleton)))
+        tops = [self._anatomy.joint(part) for part in SCOPES[scope]]
+        return sorted({j for top in tops if top is not None for j in subtree(self._skeleton, top)})
 
     def _open(self, opener: Opener, element: XmlElement) -> Motion:
         name = element.text.strip()

@@ -116,7 +116,8 @@ def standing_pose(character: Character) -> Pose:
     Without an idle clip, the first pose of the first clip is used if the rest pose has its hips on
     the ground, as motion capture may have.
     """
-    idle = next((c for name, c in character.clips.items() if name.lower().endswith("idle")), None)
+    clips = character.clips
+    idle = next((name for name in clips if name.lower().endswith("idle")), None)
     if idle is None and character.bounds[0, 1] < -0.2 * character.height:
-        idle = next(iter(character.clips.values()), None)
-    return character.skeleton.rest if idle is None else idle.sample(0.0)
+        idle = next(iter(clips), None)
+    return character.skeleton.rest if idle is None else clips[idle].sample(0.0)

@@ -11,6 +11,7 @@ import numpy as np
 
 from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import Character
+from cubeling.characters.model.limb_ends import with_more_joints
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
@@ -115,38 +116,31 @@ def with_toe_ends(character: Character) -> Character:
         places[leg.foot, :3, :3].T @ rotations.rotate(back, rig.sole(leg).ball)
         for leg in feet.values()
     ]
-    count = len(feet)
-    unbound, unturned = np.tile(np.eye(4), (count, 1, 1)), np.tile(rotations.IDENTITY, (count, 1))
-    return replace(
-        character,
-        skeleton=Skeleton(
-            (*skeleton.names, *feet),
-            (*skeleton.parents, *(leg.foot for leg in feet.values())),
-            Pose(
-                np.concatenate([rest.translations, offsets]),
-                np.concatenate([rest.rotations, unturned]),
-                None,
-                rest.morphs,
-            ),
-        ),
-        meshes=tuple(
-            replace(mesh, inverse_bind=np.concatenate([mesh.inverse_bind, unbound]))
-            for mesh in character.meshes
-        ),
+    parents = [leg.foot for leg in feet.values()]
+    longer, meshes = with_more_joints(
+        skeleton, character.meshes, [*feet], parents, np.array(offsets)
     )
+    return replace(character, skeleton=longer, meshes=meshes)
 
 
 def _leaders(skeleton: Skeleton, anatomy: Anatomy) -> Iterator[tuple[int, int]]:
     """Yield each detached joint and the joint that is to lead it."""
-    joints = anatomy.joints
+    joints, parents = anatomy.joints, [*skeleton.parents]
+
+    def with_ancestors(joint: int) -> Iterator[int]:
+        while joint >= 0:
+            yield joint
+            joint = parents[joint]
+
     wanted = [(s + part, tuple(s + a for a in above)) for part, above in _LIMBS for s in SIDES]
     wanted += [("head", _TRUNK), *((f"{side}Eye", ("head",)) for side in SIDES)]
     for part, above in wanted:
         joint = joints.get(part)
         leader = next((joints[name] for name in above if name in joints), None)
-        if joint is None or leader is None or leader in skeleton.with_ancestors([joint]):
+        if joint is None or leader is None or leader in with_ancestors(joint):
             continue
-        if joint not in skeleton.with_ancestors([leader]):  # else it would lead itself
+        if joint not in with_ancestors(leader):  # else it would lead itself
+            parents[joint] = leader  # the next ones see it, or two could lead each other
             yield joint, leader
 
 

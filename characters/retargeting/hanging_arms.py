@@ -46,11 +46,9 @@ class ArmClearance:
     @staticmethod
     def of(rig: Rig, standing: Pose) -> "ArmClearance":
         """Measure the arms of a body with a skin in a pose in which they hang."""
-        placements = standing.globals(rig.skeleton)
-        angles = {
-            side: angle for side in SIDES if (angle := _clear_angle(rig, placements, side)) > 0.0
-        }
-        return ArmClearance(rig, angles)
+        arms = _ArmSkin.by_side(rig, standing.globals(rig.skeleton))
+        angles = {side: arm.clear_angle() for side, arm in arms.items()}
+        return ArmClearance(rig, {side: angle for side, angle in angles.items() if angle > 0.0})
 
     def hold(self, poses: Pose) -> Pose:
         """Return poses (frames, …) whose arms are held away from the body as far as they hang."""
@@ -70,9 +68,8 @@ class ArmClearance:
 
 def share_inside(rig: Rig, pose: Pose) -> float:
     """Return which share of the skin of forearms and hands is inside the body; of the worse arm."""
-    placements = pose.globals(rig.skeleton)
-    arms = [_ArmSkin.of(rig, placements, side) for side in SIDES]
-    return max((arm.share_inside(0.0) for arm in arms if arm is not None), default=0.0)
+    arms = _ArmSkin.by_side(rig, pose.globals(rig.skeleton))
+    return max((arm.share_inside(0.0) for arm in arms.values()), default=0.0)
 
 
 def _arm(rig: Rig, side: str) -> tuple[int, int]:
@@ -85,16 +82,6 @@ def _arm(rig: Rig, side: str) -> tuple[int, int]:
 def _outwards(side: str) -> float:
     """Return the sign of a turn about +z that raises a hanging arm: the left one is at +x."""
     return 1.0 if side == "left" else -1.0
-
-
-def _clear_angle(rig: Rig, placements: Array, side: str) -> float:
-    """Return the smallest turn of an arm at which its skin is outside the body [rad]."""
-    arm = _ArmSkin.of(rig, placements, side)
-    if arm is None:
-        return 0.0
-    angles = np.arange(0.0, MAX_ANGLE_RAD, _STEP_RAD)
-    clear = (float(angle) for angle in angles if arm.share_inside(angle) <= _MAX_INSIDE)
-    return next(clear, float(MAX_ANGLE_RAD))
 
 
 @dataclass(frozen=True)
@@ -111,20 +98,29 @@ class _ArmSkin:
     """The body beside it."""
 
     @staticmethod
-    def of(rig: Rig, placements: Array, side: str) -> "_ArmSkin | None":
-        """Return that of a side for joint placements (joints, 4, 4); None without an arm."""
-        if f"{side}UpperArm" not in rig.anatomy.joints or not rig.meshes:
-            return None
-        upper, hand = _arm(rig, side)
-        fore = rig.anatomy.joint(f"{side}LowerArm")
+    def by_side(rig: Rig, placements: Array) -> "dict[str, _ArmSkin]":
+        """Return those that a body has for joint placements (joints, 4, 4), by their sides."""
+        sides = [side for side in SIDES if f"{side}UpperArm" in rig.anatomy.joints]
+        if not sides or not rig.meshes:
+            return {}
         points, movers = _placed_skin(rig, placements)
-        arm = points[np.isin(movers, subtree(rig.skeleton, hand if fore is None else fore))]
         body = points[np.isin(movers, _trunk_joints(rig))]
-        if not len(arm) or not len(body):
-            return None
-        mirror = np.array([_outwards(side), 1.0, 1.0])
-        shoulder = in_common_axes(rig, placements[upper, :3, 3])
-        return _ArmSkin(shoulder * mirror, arm * mirror, _Outline.of(body * mirror))
+        arms: dict[str, _ArmSkin] = {}
+        for side in sides:
+            upper, hand = _arm(rig, side)
+            fore = rig.anatomy.joint(f"{side}LowerArm")
+            arm = points[np.isin(movers, subtree(rig.skeleton, hand if fore is None else fore))]
+            if len(arm) and len(body):
+                mirror = np.array([_outwards(side), 1.0, 1.0])
+                shoulder = in_common_axes(rig, placements[upper, :3, 3])
+                arms[side] = _ArmSkin(shoulder * mirror, arm * mirror, _Outline.of(body * mirror))
+        return arms
+
+    def clear_angle(self) -> float:
+        """Return the smallest turn of the arm at which its skin is outside the body [rad]."""
+        angles = np.arange(0.0, MAX_ANGLE_RAD, _STEP_RAD)
+        clear = (float(angle) for angle in angles if self.share_inside(angle) <= _MAX_INSIDE)
+        return next(clear, float(MAX_ANGLE_RAD))
 
     def share_inside(self, angle: float) -> float:
         """Return which share of the vertices is inside the body if the arm is turned away [rad]."""
@@ -147,14 +143,8 @@ def _trunk_joints(rig: Rig) -> list[int]:
 
 def _placed_skin(rig: Rig, placements: Array) -> tuple[Array, NDArray[np.intp]]:
     """Return the vertices in the common axes, (n, 3) [m], and the joint that moves each most."""
-    points: list[Array] = []
-    movers: list[NDArray[np.intp]] = []
-    for mesh in rig.meshes:
-        points.append(in_common_axes(rig, skin(mesh, placements)))
-        strongest = np.argmax(mesh.weights, axis=1)
-        mover = np.take_along_axis(mesh.joints, strongest[:, None], axis=1)[:, 0]
-        movers.append(mover.astype(np.intp))
-    return np.concatenate(points), np.concatenate(movers)
+    points = np.concatenate([skin(mesh, placements) for mesh in rig.meshes])
+    return in_common_axes(rig, points), np.concatenate([mesh.movers for mesh in rig.meshes])
 
 
 @dataclass(frozen=True)

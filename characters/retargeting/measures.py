@@ -9,7 +9,7 @@ from cubeling.characters.model.character import skin
 from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.retargeting.rig import LegJoints, Rig
 from cubeling.characters.retargeting.soles import parts_of_joints
-from cubeling.characters.retargeting.transfer import ankle_positions
+from cubeling.characters.retargeting.transfer import ankle_positions, in_common_axes
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import SIDES
 from cubeling.characters.skeleton.pose import Array, Pose
@@ -73,9 +73,7 @@ def hands_below_shoulders(poses: Pose, rig: Rig) -> float | None:
         end = next((found for part in ends if (found := joint(part)) is not None), None)
         if upper is None or end is None:
             continue
-        placed = rotations.rotate(
-            rig.common_from_skeleton, rig.placements(poses, [end])[..., :3, 3]
-        )
+        placed = in_common_axes(rig, rig.placements(poses, [end])[..., :3, 3])
         arm = placed[:, upper] - placed[:, end]
         heights.append(float((arm[:, 1] / np.linalg.norm(arm, axis=-1)).mean()))
     return min(heights, default=None)
@@ -83,16 +81,12 @@ def hands_below_shoulders(poses: Pose, rig: Rig) -> float | None:
 
 def trunk_tilt(poses: Pose, rig: Rig) -> Array:
     """Return the angle from hips to head against that at rest, (frames,) [rad]; 0 without them."""
-    joints = [rig.anatomy.joint(part) for part in ("hips", "head")]
-    if None in joints:
+    hips, head = (rig.anatomy.joint(part) for part in ("hips", "head"))
+    if hips is None or head is None:
         return np.zeros(len(poses.rotations))
-    hips, head = (
-        rotations.rotate(rig.common_from_skeleton, pose.globals(rig.skeleton)[:, joint, :3, 3])
-        for joint in joints
-        for pose in [poses]
-    )
-    trunk = head - hips
-    at_rest = rig.rest_positions[joints[1]] - rig.rest_positions[joints[0]]
+    placed = in_common_axes(rig, rig.placements(poses, [hips, head])[..., :3, 3])
+    trunk = placed[:, head] - placed[:, hips]
+    at_rest = rig.rest_positions[head] - rig.rest_positions[hips]
     # A body may lean at rest; to either side is as far as it is turned about the vertical.
     across = np.linalg.norm(trunk[:, [0, 2]], axis=-1)
     own = np.arctan2(np.linalg.norm(at_rest[[0, 2]]), at_rest[1])

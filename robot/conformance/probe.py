@@ -47,6 +47,12 @@ class Probe(FrameExchange):
         self._beat = 0x0100
         self._number = 0
 
+    @property
+    def takes_move(self) -> bool:
+        """Whether the robot says that it takes MOVE, in a session of a version that has it."""
+        able = self.welcome is not None and self.welcome.abilities & m.ABILITY_MOVE
+        return self.version >= 3 and bool(able)
+
     # No number has a zero byte, so a frame of them is one run of COBS, and any byte may be damaged.
 
     def next_session(self) -> int:

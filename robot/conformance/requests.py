@@ -13,7 +13,6 @@ MAX_OPEN = 10_000
 """Most messages that wait for an answer; older ones are forgotten."""
 
 _UNASKED_KINDS = m.State | m.Log
-_COMMANDS = m.Express | m.Play | m.Stop | m.Move
 
 
 class OpenRequests:
@@ -57,7 +56,7 @@ def _answers(answer: Any, message: Any) -> bool:
         case m.Gone():
             return not isinstance(message, m.Hello)
         case m.Ack():
-            return isinstance(message, _COMMANDS) and message.number == answer.number
+            return isinstance(message, m.Command) and message.number == answer.number
         case m.Joint():
             asked = (m.ITEM_JOINT, answer.index)
         case _:

@@ -6,9 +6,7 @@ from functools import partial
 
 from cubeling.characters.behaviour.bml.document import Behaviour, Block, Constraint, SyncReference
 from cubeling.characters.behaviour.bml.timing import Timing
-
-MAX_LISTED = 12
-"""Sync points that a message lists."""
+from cubeling.characters.errors import listed
 
 Moment = tuple[str, int]
 """A sync point: a behaviour's id, and the index in its `Timing.syncs`."""
@@ -133,8 +131,7 @@ class Resolver:
         if timing is None:
             raise Unmet(owner, not_performed(reference))
         if reference.sync not in timing.index:
-            more = ", …" if len(timing.syncs) > MAX_LISTED else ""
-            points = ", ".join(timing.syncs[:MAX_LISTED]) + more
+            points = listed(timing.syncs)
             raise Unmet(owner, f"{reference} is no sync point of it; it has {points}")
         return (reference.behaviour, timing.index[reference.sync]), reference.offset
 

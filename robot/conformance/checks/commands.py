@@ -4,18 +4,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.failsafe import SILENCE_S
+from cubeling.robot.conformance.checks.ways import FAR_RAD
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
 from cubeling.robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, Probe
 from cubeling.robot.protocol import messages as m, timing
 
 COMMANDS = CheckGroup("Commands", 6)
-
-FAILSAFE_SILENCE_S = timing.FAILSAFE_PROMISE + 0.02
-"""Silence after which a session has ended [s]."""
-
-_FAR_RAD = 32.767
-"""An angle beyond the limits of all joints [rad]."""
 
 
 @COMMANDS.must
@@ -145,7 +141,7 @@ def never_refused(probe: Probe) -> None:
         for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
             if count:
                 probe.send(m.Play(probe.next_number(), item, count - 1))
-        if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE and welcome.joints:
+        if probe.takes_move and welcome.joints:
             angles = probe.beat("HELLO").joints
             probe.send(m.Move(probe.next_number(), 1.0, 0, 1, angles))
         probe.express(0.0, 0.0)
@@ -201,7 +197,7 @@ def result_in_state(probe: Probe) -> None:
         if end == "BYE":
             probe.send(m.Bye())
         elif end == "the failsafe":
-            probe.receive(FAILSAFE_SILENCE_S)
+            probe.receive(SILENCE_S)
         probe.reopen_session()
         _expect_result(probe, m.RESULT_REFUSED, f"a refused command and {end}")
     probe.open_session()
@@ -242,7 +238,7 @@ def refused_commands(probe: Probe) -> Iterator[tuple[m.Command, int]]:
             yield m.Express(probe.next_number(), -0.5, 0.5, mood), m.RESULT_REFUSED
     for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
         yield m.Play(probe.next_number(), item, count), m.RESULT_REFUSED
-    if probe.version < 3 or not welcome.abilities & m.ABILITY_MOVE:
+    if not probe.takes_move:
         return
     known = (1 << welcome.joints) - 1
     angles = probe.beat("HELLO").joints
@@ -251,7 +247,7 @@ def refused_commands(probe: Probe) -> Iterator[tuple[m.Command, int]]:
             command = m.Move(probe.next_number(), 1.0, released, moved, angles)
             yield command, m.RESULT_REFUSED
     if welcome.joints:
-        beyond = (*angles[: welcome.joints - 1], _FAR_RAD) + (0.0,) * m.JOINTS_MAX
+        beyond = (*angles[: welcome.joints - 1], FAR_RAD) + (0.0,) * m.JOINTS_MAX
         far = m.Move(probe.next_number(), 1.0, known, known, beyond[: m.JOINTS_MAX])
         yield far, m.RESULT_OUT_OF_RANGE
 

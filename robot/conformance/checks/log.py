@@ -4,6 +4,7 @@ from itertools import pairwise
 from math import inf
 
 from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.heartbeat import pauses_between_states
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
 from cubeling.robot.conformance.probe import TIMING_SLACK_S, Probe
@@ -19,9 +20,6 @@ REFUSED_EVERY_S = 0.04
 
 WAITING_REFUSALS = 20
 """Refused commands in a session of version 2: more lines than a robot keeps."""
-
-LISTENING_TIME_S = 0.35
-"""Time in which STATE must come without BEAT [s]; shorter than the failsafe's."""
 
 DRAINED_WITHIN_S = 4.0
 """Time after which a robot that still sends LOGs is one that always does [s]."""
@@ -113,11 +111,7 @@ def log_lines_wait(probe: Probe) -> str | None:
         probe.command(refused, m.RESULT_REFUSED)
     before = len(probe.log.logs)
     probe.hello()
-    begin = probe.now
-    received = probe.receive(LISTENING_TIME_S)
-    times = [one.timestamp for one in received if isinstance(one.message, m.State)]
-    edges = [begin, *times, begin + LISTENING_TIME_S]
-    longest = max(later - former for former, later in pairwise(edges))
+    longest = max(pauses_between_states(probe))
     if longest > timing.STATE_EVERY + TIMING_SLACK_S:
         expected = f"STATE every {1000 * timing.STATE_EVERY:.0f} ms while lines of the log wait"
         raise CheckFailed(expected, f"a pause of {1000 * longest:.0f} ms")

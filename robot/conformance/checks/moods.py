@@ -99,22 +99,21 @@ def own_mood_follows_the_emotion_shown(probe: Probe) -> None:
 def emotion_and_mood_kept(probe: Probe) -> None:
     """PLAY and MOVE do not end the emotion, nor the mood that was named; nor does time."""
     welcome = probe.open_neutral_session()
-    named = probe.version >= 2 and welcome.moods > 1
-    mood = welcome.moods - 1 if named else m.NOTHING
+    mood = last_mood(probe)
     probe.express(*_EMOTION, mood)
     commands: list[m.Command] = []
     if welcome.motions:
         commands.append(m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions - 1))
     if welcome.sounds:
         commands.append(m.Play(probe.next_number(), m.ITEM_SOUND, welcome.sounds - 1))
-    if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE:
+    if probe.takes_move:
         commands.append(m.Move(probe.next_number(), 0.0, 0, 0, (0.0,) * m.JOINTS_MAX))
     for command in commands:
         probe.send(command)
         probe.expect(m.Ack, "PLAY or MOVE", number=command.number)
     expect_emotion(probe, _EMOTION, "EXPRESS, and PLAY or MOVE")
     for state in probe.keep_alive(_KEPT_S):
-        if named and state.mood != mood:
+        if mood not in (state.mood, m.NOTHING):
             raise CheckFailed(f"mood {mood} after PLAY or MOVE", f"mood={state.mood}")
         if emotion_distance(state, *_EMOTION) > EMOTION_TOLERANCE:
             shown = f"({state.valence}, {state.arousal})"
@@ -133,10 +132,17 @@ def stop_ends_a_named_mood(probe: Probe) -> None:
 
 def mood_to_name(probe: Probe) -> int:
     """Open a session and return a mood to name; raises NotApplicableError if there is none."""
-    welcome = probe.open_session()
-    if probe.version < 2 or welcome.moods < 2:
+    probe.open_session()
+    mood = last_mood(probe)
+    if mood == m.NOTHING:
         raise NotApplicableError("it speaks version 1, or has fewer than two moods")
-    return welcome.moods - 1
+    return mood
+
+
+def last_mood(probe: Probe) -> int:
+    """Return the last mood in the open session; NOTHING if none but the first can be named."""
+    moods = probe.welcome.moods if probe.welcome is not None and probe.version >= 2 else 0
+    return moods - 1 if moods > 1 else m.NOTHING
 
 
 def expect_mood(probe: Probe, mood: int, after: str) -> None:

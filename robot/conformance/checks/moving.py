@@ -4,13 +4,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from cubeling.robot.conformance.check import CheckGroup
-from cubeling.robot.conformance.checks.catalogue import known_joints
 from cubeling.robot.conformance.checks.failsafe import SILENCE_S
 from cubeling.robot.conformance.checks.ways import (
     ANGLE_TOLERANCE_RAD,
+    FAR_RAD,
     LEVEL,
     MIN_DURATION_S,
-    MIN_RANGE_RAD,
     SPARE_TIME,
     begin_way,
     choose_way,
@@ -20,6 +19,7 @@ from cubeling.robot.conformance.checks.ways import (
     expect_held,
     movable_joints,
     one_angle,
+    wide_joints,
     within_limits,
 )
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
@@ -39,9 +39,6 @@ MAX_MOTIONS = 8
 
 HELD_S = 0.35
 """Time for each of them [s]."""
-
-_FAR_RAD = 32.767
-"""An angle beyond the limits of all joints [rad]."""
 
 
 @MOVING.must_of(4)
@@ -124,11 +121,11 @@ def other_joints_left_alone(probe: Probe) -> None:
     angles = within_limits(joints, probe.beat("HELLO").joints)
     last = 1 << len(joints) - 1
     for released, moved, held, named in (
-        (0, last, last, (*(_FAR_RAD,) * (len(joints) - 1), angles[len(joints) - 1])),
-        (0, 1, last | 1, (angles[0], *(-_FAR_RAD,) * (len(joints) - 1))),
-        (last, 0, 1, (_FAR_RAD,) * len(joints)),
+        (0, last, last, (*(FAR_RAD,) * (len(joints) - 1), angles[len(joints) - 1])),
+        (0, 1, last | 1, (angles[0], *(-FAR_RAD,) * (len(joints) - 1))),
+        (last, 0, 1, (FAR_RAD,) * len(joints)),
     ):
-        named = (*named, *(_FAR_RAD,) * m.JOINTS_MAX)[: m.JOINTS_MAX]
+        named = (*named, *(FAR_RAD,) * m.JOINTS_MAX)[: m.JOINTS_MAX]
         probe.command(m.Move(probe.next_number(), 0.3, released, moved, named))
         expect_held(probe, held, f"MOVE(released={released}, moved={moved})")
     bits = (1 << len(joints)) - 1
@@ -146,10 +143,7 @@ def other_joints_left_alone(probe: Probe) -> None:
 @MOVING.must_of(7)
 def joint_returns_within_its_speed(probe: Probe) -> None:
     """A joint that is let go returns no faster than its top speed."""
-    joints = movable_joints(probe)
-    wide = [one for one in joints if one.high - one.low >= MIN_RANGE_RAD]
-    if not wide:
-        raise NotApplicableError(f"no joint turns by {MIN_RANGE_RAD} rad")
+    wide = wide_joints(probe)
     # The way of a slow joint is seen for longest; one that takes seconds would cost too much.
     joint = max(wide, key=lambda one: (crossing_time(one) <= MAX_WAY_S, crossing_time(one)))
     start = probe.beat("HELLO").joints[joint.index]
@@ -173,9 +167,10 @@ def joint_returns_within_its_speed(probe: Probe) -> None:
 @MOVING.must_of(5)
 def move_taken_in_earlier_versions(probe: Probe) -> None:
     """A MOVE is taken in sessions of versions 1 and 2 too."""
-    if not movable_joints(probe):
+    joints = movable_joints(probe)
+    if not joints:
         raise NotApplicableError("it has no joints")
-    angles = within_limits(known_joints(probe), probe.beat("HELLO").joints)
+    angles = within_limits(joints, probe.beat("HELLO").joints)
     for offer in (1, 2):
         probe.hello(offer=offer)
         number = probe.next_number()
@@ -212,7 +207,7 @@ def angle_beyond_limits_refused(probe: Probe) -> None:
         probe.command(command)
     probe.command(m.Move(probe.next_number(), 0.0, way.bit, 0, LEVEL))
     expect_held(probe, 0, "a MOVE that lets go")
-    for angle in (joint.low - 1e-3, joint.high + 1e-3, 32.767):
+    for angle in (joint.low - 1e-3, joint.high + 1e-3, FAR_RAD):
         command = m.Move(probe.next_number(), 0.0, 0, way.bit, one_angle(index, angle))
         probe.command(command, m.RESULT_OUT_OF_RANGE)
     for state in probe.keep_alive(EFFECT_WITHIN_S):
@@ -230,7 +225,7 @@ def unknown_joint_refused(probe: Probe) -> None:
         for released, moved in ((bit, 0), (0, bit)):
             number = probe.next_number()
             # Beyond their limits too, but the smaller result counts.
-            far = (_FAR_RAD,) * m.JOINTS_MAX
+            far = (FAR_RAD,) * m.JOINTS_MAX
             probe.command(m.Move(number, 0.0, released, moved | 1, far), m.RESULT_REFUSED)
             probe.expect_taken(number, "a refused MOVE")
 

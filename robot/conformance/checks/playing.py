@@ -5,7 +5,7 @@ from math import inf
 from cubeling.robot.conformance.check import CheckGroup
 from cubeling.robot.conformance.checks.catalogue import ITEM_WORDS
 from cubeling.robot.conformance.checks.commands import refused_commands
-from cubeling.robot.conformance.checks.moods import expect_emotion
+from cubeling.robot.conformance.checks.moods import expect_emotion, last_mood
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.probe import (
     EFFECT_WITHIN_S,
@@ -187,14 +187,14 @@ def refusals_end_nothing(probe: Probe) -> None:
         probe.open_neutral_session()
     welcome = probe.welcome
     assert welcome is not None
-    named = probe.version >= 2 and welcome.moods > 1
+    mood = last_mood(probe)
     held = 0
-    if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE and welcome.joints > 1:
+    if probe.takes_move and welcome.joints > 1:
         held = 1 << welcome.joints - 1
         angles = probe.beat("HELLO").joints
         probe.send(m.Move(probe.next_number(), 1.0, 0, held, angles))
         held = probe.keep_alive(EFFECT_WITHIN_S)[-1].held
-    probe.express(*_EMOTION, welcome.moods - 1 if named else m.NOTHING)
+    probe.express(*_EMOTION, mood)
     expect_emotion(probe, _EMOTION, "EXPRESS")  # before PLAY: a new mood may have its own sound
     for item, index in entries.items():
         play(probe, item, index)
@@ -204,7 +204,7 @@ def refusals_end_nothing(probe: Probe) -> None:
     state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
     for item, index in entries.items():
         expect_still_played(state, item, index, "refused commands")
-    if named and before.mood == welcome.moods - 1 != state.mood:
+    if mood != m.NOTHING and before.mood == mood != state.mood:
         raise CheckFailed(f"mood {before.mood} after refused commands", f"mood={state.mood}")
     if probe.version >= 3 and state.held != held:
         raise CheckFailed(f"held={held} after refused commands", f"held={state.held}")

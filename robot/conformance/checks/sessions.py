@@ -1,6 +1,7 @@
 """Checks of section 5: how sessions begin, and what is kept from one to the next."""
 
 from cubeling.robot.conformance.check import CheckGroup
+from cubeling.robot.conformance.checks.moods import last_mood
 from cubeling.robot.conformance.errors import CheckFailed, NotApplicableError
 from cubeling.robot.conformance.exchange import REPLY_WITHIN_S
 from cubeling.robot.conformance.probe import (
@@ -168,16 +169,16 @@ def hello_of_its_host_keeps_everything(probe: Probe) -> None:
     """HELLO of the same host, also a repeated one, keeps emotion, mood, held joints and stop."""
     for repeated in (True, False):
         welcome = probe.open_session()
-        named = probe.version >= 2 and welcome.moods > 1
-        if probe.version >= 3 and welcome.abilities & m.ABILITY_MOVE and welcome.joints:
+        mood = last_mood(probe)
+        if probe.takes_move and welcome.joints:
             angles = probe.beat("HELLO").joints
             probe.send(m.Move(probe.next_number(), 1.0, 0, 1, angles))
-        probe.express(0.8, 0.6, welcome.moods - 1 if named else m.NOTHING)
+        probe.express(0.8, 0.6, mood)
         before = probe.keep_alive(EFFECT_WITHIN_S)[-1]
         after = "a repeated HELLO" if repeated else "the next HELLO of its host"
         _hello_again(probe, repeated)
         state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
-        for field in ("held", "mood") if named else ("held",):
+        for field in ("held",) if mood == m.NOTHING else ("held", "mood"):
             if getattr(state, field) != getattr(before, field):
                 expected = f"STATE({field}={getattr(before, field)}) after {after}"
                 raise CheckFailed(expected, f"{field}={getattr(state, field)}")

@@ -23,6 +23,9 @@ MIN_DURATION_S = 0.6
 MAX_UNEVENNESS = 0.3
 """How much of its way a joint may be ahead or behind: servos start and stop slowly."""
 
+FAR_RAD = 32.767
+"""An angle beyond the limits of all joints [rad]."""
+
 LEVEL = (0.0,) * m.JOINTS_MAX
 """Angles of a MOVE of no joint [rad]."""
 
@@ -60,12 +63,17 @@ def movable_joints(probe: Probe) -> list[m.Joint]:
     return joints
 
 
-def choose_way(probe: Probe) -> Way:
-    """Open a session, and return a way for the joint that crosses its range in the least time."""
+def wide_joints(probe: Probe) -> list[m.Joint]:
+    """Open a session, and return the joints whose movement is seen; there is one at least."""
     wide = [joint for joint in movable_joints(probe) if joint.high - joint.low >= MIN_RANGE_RAD]
     if not wide:
         raise NotApplicableError(f"no joint turns by {MIN_RANGE_RAD} rad")
-    joint = min(wide, key=lambda one: (one.high - one.low) / max(one.speed, 1e-3))
+    return wide
+
+
+def choose_way(probe: Probe) -> Way:
+    """Open a session, and return a way for the joint that crosses its range in the least time."""
+    joint = min(wide_joints(probe), key=crossing_time)
     start = probe.beat("HELLO").joints[joint.index]
     share = 0.2 if start > (joint.low + joint.high) / 2 else 0.8
     goal = round(joint.low + share * (joint.high - joint.low), 3)

@@ -153,6 +153,19 @@ def test_a_foot_that_a_rig_has_elsewhere_is_led_by_its_shin(human):
     assert foot_gap(lent.clips["jump"].poses, Rig(lent.skeleton, lent.anatomy)) < 0.01
 
 
+def test_toes_that_carry_the_shin_are_not_led_by_the_foot_that_it_leads(human):
+    swapped = {"leftToes": "LeftLeg", "leftLowerLeg": "LeftFoot", "leftFoot": "LeftToe"}
+    body = human.with_stated_anatomy
+    torn = _with_foot_at_root(replace(body, semantics={**body.semantics, **swapped}))
+    whole = with_attached_limbs(torn)
+    joint, parents = whole.anatomy.joints, whole.skeleton.parents
+    assert parents[joint["leftFoot"]] == joint["leftLowerLeg"]
+    assert parents[joint["leftLowerLeg"]] == joint["leftToes"]
+    rest, before = (each.skeleton.rest.globals(each.skeleton) for each in (whole, torn))
+    for mesh, own in zip(whole.meshes, torn.meshes, strict=True):
+        np.testing.assert_allclose(skin(mesh, rest), skin(own, before), atol=1e-6)
+
+
 def _with_foot_at_root(human):
     """The human, whose left foot is a child of its root."""
     skeleton, foot = human.skeleton, human.anatomy.joints["leftFoot"]
