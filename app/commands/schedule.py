@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,6 +19,8 @@ from cubeling.app.ui.output_formats import VIDEO_FORMATS, check_video_codec
 from cubeling.files import FileKind
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from cubeling.characters import Character, Clip
     from cubeling.characters.motion import Motion, Schedule
 
@@ -143,8 +146,8 @@ def _motion(name: str, body: Character) -> Motion:
     return recording.clip if same else read_motions([name], body)[0]
 
 
-def _idle(file: Path, name: str, body: Character, seed: int) -> Motion:
-    """Return the idle motion of an .idle file, or of a bundled character."""
+def _idle(file: Path, name: str, body: Character, seed: int) -> Callable[[], Motion]:
+    """Return what begins the idle motion of an .idle file, or of a bundled character."""
     from cubeling.characters import Character, CharacterError, standing_as
 
     if name.endswith(".idle"):
@@ -156,7 +159,7 @@ def _idle(file: Path, name: str, body: Character, seed: int) -> Motion:
         motion = who.standing
     if motion is None:
         raise CharacterError(f"{name} has no idle motion; make it with cubeling idle learn")
-    return motion(seed)
+    return partial(motion, seed)
 
 
 def _write(clip: Clip, body: Character, target: Path, codec: str) -> None:

@@ -7,6 +7,7 @@ The two appendices spell some things differently (erratum 12); both spellings ar
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import TypeVar
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
 from cubeling.characters.skeleton.masks import subtree
 from cubeling.characters.skeleton.pose import Array, Skeleton
 from cubeling.characters.xml_elements import XmlElement, XmlLimits, read_xml
+
+_T = TypeVar("_T")
 
 _SIDED_HANIM = {
     "sternoclavicular": "Shoulder",
@@ -63,6 +66,9 @@ SCOPES: dict[str, tuple[str, ...]] = {
 Opener = Callable[[str], Motion]
 """Opens the motion of a name that a schedule gives."""
 
+IdleOpener = Callable[[str], Callable[[], Motion]]
+"""Opens an idle motion by its name, and returns what begins it: each action has its own."""
+
 
 @dataclass(frozen=True)
 class _Parameters:
@@ -85,7 +91,8 @@ class ScheduleReader:
     skeleton, anatomy
         Whose joints the schedules mix.
     open_motion, open_idle
-        Open a recorded motion, and an endless idle motion, of the names that a schedule gives.
+        Open a recorded motion, and what begins an endless idle motion, of the names that a
+        schedule gives.
     filters
         Make filters of poses, by the type of the modifier that asks for one.
     """
@@ -95,11 +102,12 @@ class ScheduleReader:
         skeleton: Skeleton,
         anatomy: Anatomy,
         open_motion: Opener,
-        open_idle: Opener,
+        open_idle: IdleOpener,
         filters: Mapping[str, Callable[[], PoseFilter]] | None = None,
     ) -> None:
         self._skeleton, self._anatomy = skeleton, anatomy
-        # Actions that name one motion share it: a recording may take a second to open.
+        # Actions that name one file share it: a recording may take a second to open. An idle
+        # motion goes on from where it was last asked for, so two actions cannot share that.
         self._open_motion, self._open_idle = cache(open_motion), cache(open_idle)
         self._scope = cache(self._joints_in)
         self._filters = dict(filters or {})
@@ -176,7 +184,7 @@ class ScheduleReader:
             return self._open(self._open_motion, element)
         if kind in ("idlemotion", "idleemotion"):
             self._check_tag(element, ("balance",))
-            return self._open(self._open_idle, self._one(element, "balance"))
+            return self._open(self._open_idle, self._one(element, "balance"))()
         if kind == "modifier":
             self._check_tag(element, ("modifier", "blendableobject"))
             inner = self._object(self._one(element, "blendableobject"))
@@ -287,7 +295,7 @@ class ScheduleReader:
         tops = [self._anatomy.joint(part) for part in SCOPES[scope]]
         return sorted({j for top in tops if top is not None for j in subtree(self._skeleton, top)})
 
-    def _open(self, opener: Opener, element: XmlElement) -> Motion:
+    def _open(self, opener: Callable[[str], _T], element: XmlElement) -> _T:
         name = element.text.strip()
         if not name:
             raise self._error(element, f"<{element.tag}> names no file")

@@ -99,7 +99,7 @@ class ScheduleTrial:
         human = Character.load("human")
         clip = human.clips["wave"]
         self._reader = ScheduleReader(
-            human.skeleton, human.anatomy, lambda name: clip, lambda name: clip
+            human.skeleton, human.anatomy, lambda name: clip, lambda name: lambda: clip
         )
 
     def __call__(self, document: str) -> str:

@@ -55,7 +55,9 @@ def reader(human: Character) -> ScheduleReader:
         return Clip(name, RATE, still, loop=False)
 
     filters = {"upright": lambda: lambda pose: leaning(human, 0.0)}
-    return ScheduleReader(human.skeleton, human.anatomy, motion, lambda name: Nod(human), filters)
+    return ScheduleReader(
+        human.skeleton, human.anatomy, motion, lambda name: lambda: Nod(human), filters
+    )
 
 
 def example(reader: ScheduleReader, name: str) -> Schedule:
@@ -115,6 +117,20 @@ def document(action: str = "", rest: str = "", params: str = "") -> bytes:
 <activate id="a" offset="0.5f"/>
 {rest}
 </blendingschedule>""".encode()
+
+
+def test_two_actions_do_not_share_one_idle_motion(reader) -> None:
+    pool = "".join(
+        f'<blendingaction id="{name}"><blendableobject type="idlemotion">'
+        "<balance>human</balance></blendableobject></blendingaction>"
+        for name in "ab"
+    )
+    text = (
+        f"<blendingschedule><actionpool>{pool}</actionpool>"
+        '<activate id="a" offset="0"/><activate id="b" offset="5"/></blendingschedule>'
+    )
+    one, other = reader.read(text.encode(), "idle.xml").actions
+    assert one.motion is not other.motion
 
 
 def test_joints_scopes_and_scales_override_each_other(human, reader) -> None:
