@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cubeling.app.ui.canvas import text_mask, text_width
-from cubeling.app.ui.cards.subtitles import MAX_LETTERS, SIZE, parts, subtitle, wrap_text
+from cubeling.app.ui.canvas import text_mask, text_width, wrap_text
+from cubeling.app.ui.cards.subtitles import MAX_LETTERS, SIZE, parts, subtitle
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.speech.speech import Utterance, Word
 
