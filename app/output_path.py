@@ -2,7 +2,8 @@
 
 import os
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
 
@@ -78,6 +79,20 @@ def check_output_folder(folder: Path, files: Iterable[str], kind: str, *, overwr
         raise AppError(f"'{folder}' cannot be written to: choose another place")
     if not overwrite and any((folder / name).exists() for name in files):
         raise AppError(f"'{folder}' holds {kind} already: choose another one or add --overwrite")
+
+
+@contextmanager
+def output_folder(folder: Path) -> Iterator[None]:
+    """Make a folder to write files into; after an error, none is left that is new and empty."""
+    existed = folder.exists()
+    folder.mkdir(exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):  # it holds something
+            if not existed:
+                folder.rmdir()
+        raise
 
 
 def default_folder() -> Path:

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cubeling.app.output_path import check_output_folder
+from cubeling.app.output_path import check_output_folder, output_folder
 
 
 def sounds(
@@ -34,9 +34,9 @@ def sounds(
         for number, samples in enumerate(bank.variants(name), start=1)
     }
     check_output_folder(output, files, "sounds", overwrite=overwrite)
-    output.mkdir(exist_ok=True)
-    for name, samples in files.items():
-        write_wave(output / name, samples)
+    with output_folder(output):
+        for name, samples in files.items():
+            write_wave(output / name, samples)
     table = Table("sound", "is heard when", "seconds")
     for name, sound in SOUNDS.items():
         seconds = len(bank.variants(name)[0]) / SAMPLE_RATE

@@ -195,16 +195,24 @@ def _value_of(kind: Any, value: Any) -> Any:
         choices = [choice for choice in typing.get_args(kind) if choice is not type(None)]
         return None if value is None else _value_of(choices[0], value)
     if origin is np.ndarray:
-        return np.array(value, float) if isinstance(value, list) else _mask(value)
+        return _mask(value) if isinstance(value, str) else _numbers(value)
     if origin is tuple:
         return tuple(_value_of(typing.get_args(kind)[0], item) for item in value)
     if kind is float:
-        return float("nan") if value is None else float(value)
+        return value if isinstance(value, float) else float(_numbers(value))
     if kind in (bool, int, str) and type(value) is not kind:
         raise ValueError(f"{str(value)!r:.40} is no {kind.__name__}")
     if origin is typing.Literal and value not in typing.get_args(kind):
         raise ValueError(f"{str(value)!r:.40} is none of {typing.get_args(kind)}")
     return value
+
+
+def _numbers(value: Any) -> NDArray[np.float64]:
+    """Return numbers, with NaN for None."""
+    try:
+        return np.array(value, float)
+    except (ValueError, TypeError):
+        raise ValueError(f"{str(value)!r:.40} is no number or array of numbers") from None
 
 
 def _mask(text: str) -> NDArray[np.uint8]:

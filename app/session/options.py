@@ -183,7 +183,15 @@ class SessionOptions:
 
     @classmethod
     def from_metadata(cls, metadata: Mapping[str, str], source: str) -> Self:
-        """Return the settings that `metadata` kept, to replay the recording `source`."""
+        """Return the settings that `metadata` kept, to replay the recording `source`.
+
+        Raises ValueError if its `turns` is no number.
+        """
+        turns = metadata.get("turns", "2")
+        try:
+            turn_gain = float(turns)
+        except ValueError:
+            raise ValueError(f"its 'turns' is {turns!r:.40}, which is no number") from None
         realism = metadata.get("realism", ",".join(REALISM_CHOICES))
         return cls(
             scenario=metadata["scenario"],
@@ -196,7 +204,7 @@ class SessionOptions:
             # What was recorded before there were lent motions had none.
             own_motions_only=metadata.get("own_motions_only", "yes") == "yes",
             speed_map=metadata.get("speed_map", "corrected"),
-            turns=float(metadata.get("turns", "2")),
+            turns=turn_gain,
             personality=metadata.get("personality") or None,
             look=metadata.get("look", "auto"),
             inside=metadata.get("inside", "auto"),

@@ -12,7 +12,7 @@ from rich.markup import escape
 
 from cubeling.app.commands.session.complete import complete_session
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import check_output_folder
+from cubeling.app.output_path import check_output_folder, output_folder
 
 Labels = Annotated[
     list[str] | None,
@@ -63,8 +63,8 @@ def export(
             )
             for each in exported
         ]
-        output.mkdir(exist_ok=True)
-        rows = write_tables(complete, output)
+        with output_folder(output):
+            rows = write_tables(complete, output)
     console = Console(highlight=False, soft_wrap=True)
     for name, count in rows.items():
         console.print(f"{name:11} {count:8} {'row' if count == 1 else 'rows'}")

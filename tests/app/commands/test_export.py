@@ -138,6 +138,15 @@ def test_an_export_that_is_stopped_leaves_the_earlier_one_as_it_was(
     assert {path.name: path.read_bytes() for path in Path("out").iterdir()} == earlier
 
 
+def test_an_export_that_fails_leaves_no_empty_folder(cubeling, short_session, monkeypatch):
+    def stop(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(writing, "_table_rows", stop)
+    assert cubeling("export", short_session, "-o", "new")[0] == 2
+    assert not Path("new").exists()
+
+
 def test_the_page_has_the_dictionary_of_the_code():
     text = DOCUMENT.read_text("utf-8")
     assert updated(text) == text, "run `python -m tools.export_dictionary`"

@@ -101,6 +101,16 @@ def test_another_document_is_refused(document):
         decode(EmotionTarget, document)
 
 
+@pytest.mark.parametrize("damaged", [[[1.0], [2.0, 3.0]], {"a": 1}, ["one"]])
+@pytest.mark.parametrize("name", ["velocity", "timestamp"])
+def test_what_should_be_numbers_is_refused_in_plain_words(name, damaged):
+    numbers = {"velocity": [0.0] * 6, "covariance": [], "timestamp": 1.5} | {name: damaged}
+    fields = {"visible": False, "camera_from_cube": None, "source": "image", "faces": []}
+    document = json.dumps(fields | numbers | {"reprojection_error": None}).encode()
+    with pytest.raises(ValueError, match="is no number or array"):
+        decode(CubeState, document)
+
+
 OLD_COMMAND = {
     "timestamp": 1.5, "action": "kiss", "speed": 0.0, "target": [0.1, 0.2], "look_at": [0.0, 2.0],
     "gaze": None, "weight": 0.5, "feeling": [0.25, -0.5], "mood": "sad", "visible": True,

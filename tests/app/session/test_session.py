@@ -132,7 +132,9 @@ def test_metadata_that_no_recorder_writes_is_refused_in_one_line(tmp_path, turns
     with Recorder(path, {"scenario": "follow", "turns": turns}) as recorder:
         recorder.event("started", 0.0)
         recorder._steps = 1
-    with pytest.raises(AppError, match=r"cannot read the session '.*odd\.mcap': could not") as told:
+    with pytest.raises(
+        AppError, match=r"cannot read the session '.*odd\.mcap': its 'turns'"
+    ) as told:
         session_info(path)
     assert str(told.value).isprintable()
 
