@@ -30,6 +30,7 @@ def test_april_tags_of_opencv_4_are_read_and_named() -> None:
     playground.close()
 
 
+@pytest.mark.slow(reason="the whole picture is searched for a cube that is not as it should be")
 def test_a_fault_of_a_cube_that_is_tracked_is_named_for_a_while() -> None:
     fault = PrintFault("rolled", ("front",), 90)
     printed = cube_with(CUBE, fault)
