@@ -189,9 +189,11 @@ def _check_gestures(tagged: TaggedText, character: Character) -> None:
     """Refuse a gesture that the character does not know."""
     from cubeling.characters import known_gestures
 
-    known = known_gestures(character)
-    for span in tagged.spans:
-        if span.name not in known:
+    names = [span.name for span in tagged.spans]
+    known = known_gestures(character, names)
+    for name in names:
+        if name not in known:
             raise AppError(
-                f"{character.name} has no gesture '{span.name}': choose one of {', '.join(known)}"
+                f"{character.name} has no gesture '{name}': `cubeling gesture list` names all, "
+                f"besides there are its clips ({', '.join(character.clips)})"
             )

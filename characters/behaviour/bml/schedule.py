@@ -3,7 +3,7 @@
 import math
 from collections import defaultdict, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from cubeling.characters.behaviour.bml.constraints import (
     Contradictory,
@@ -197,6 +197,8 @@ class Scheduler:
                 continue
             if part.required:
                 raise BlockFailed(failure)
+            if isinstance(part, Behaviour) and self._give_up_a_time(part, failure):
+                continue
             self._failures.append(failure)
             self._constraints.pop(failure.id, None)
             self._timings.pop(failure.id, None)
@@ -206,6 +208,20 @@ class Scheduler:
                     del self._constraints[name], self._parts[name]
                 else:
                     waiting.append(_impossible(name, not_performed(reference)))
+
+    def _give_up_a_time(self, behaviour: Behaviour, failure: Failure) -> bool:
+        """Let a behaviour that yields give up its last time, if it has others; return whether."""
+        timing = self._timings.get(behaviour.id)
+        if not behaviour.yielding or len(behaviour.syncs) < 2 or timing is None:
+            return False
+        if failure.type != "IMPOSSIBLE_TO_SCHEDULE":
+            return False
+        last = max(behaviour.syncs, key=lambda sync: timing.index.get(sync, math.inf))
+        syncs = {sync: at for sync, at in behaviour.syncs.items() if sync != last}
+        kept = replace(behaviour, syncs=syncs)
+        self._behaviours[behaviour.id] = self._parts[behaviour.id] = kept
+        self._failures.append(replace(failure, reason=f"its {last} is given up: {failure.reason}"))
+        return True
 
 
 def _tied(block: Block) -> Mapping[str, list[tuple[str, SyncReference]]]:
