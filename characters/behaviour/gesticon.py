@@ -16,6 +16,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Literal, get_args
 
 from cubeling.characters.errors import CharacterError
@@ -32,6 +33,12 @@ GESTICON_FILE = toml_kind(
 MeaningKind = Literal["gesture", "head", "face", "posture", "clip"]
 """What a name leads to."""
 
+CLIP_PARTS = ("head", "arms")
+"""Parts of the body that clips may be for."""
+
+NO_CLIPS: Mapping[str, Collection[str]] = MappingProxyType({})
+"""No clips: all are for what they move."""
+
 MAX_WORDS = 12
 """Words of a name that are looked at."""
 
@@ -45,7 +52,7 @@ class Meaning:
     kind: MeaningKind
 
     name: str
-    """Of a gesture, a movement of the head, something on a face, a posture, or joints."""
+    """Of a gesture, a movement of the head, something on a face, a posture, or a clip."""
 
 
 class Gesticon:
@@ -55,9 +62,16 @@ class Gesticon:
     ----------
     aliases
         By meaning, its names in words; those that come first go first.
+    clips
+        By part of the body, "head" or "arms", the clips that are for it.
     """
 
-    def __init__(self, aliases: Mapping[Meaning, Collection[str]]) -> None:
+    def __init__(
+        self,
+        aliases: Mapping[Meaning, Collection[str]],
+        clips: Mapping[str, Collection[str]] = NO_CLIPS,
+    ) -> None:
+        self._parts = {words_of(name): part for part, names in clips.items() for name in names}
         self._exact: dict[tuple[str, ...], Meaning] = {}
         self._by_word: dict[str, list[tuple[frozenset[str], Meaning]]] = {}
         for meaning, names in aliases.items():
@@ -81,12 +95,15 @@ class Gesticon:
         file = TomlTable(read(path, GESTICON_FILE), str(path), error=CharacterError)
         file.only(*get_args(MeaningKind))
         aliases: dict[Meaning, Collection[str]] = {}
-        for kind in get_args(MeaningKind):
-            names = file.table(kind) if kind in file else ()
+        tables = {kind: file.table(kind) for kind in get_args(MeaningKind) if kind in file}
+        clips = tables.pop("clip", None)
+        for kind, names in tables.items():
             for name in names:
-                own = () if kind == "clip" else (name,)
-                aliases[Meaning(kind, name)] = (*own, *names.texts(name))
-        return Gesticon(aliases)
+                aliases[Meaning(kind, name)] = (name, *names.texts(name))
+        if clips is None:
+            return Gesticon(aliases)
+        clips.only(*CLIP_PARTS)
+        return Gesticon(aliases, {part: clips.texts(part) for part in clips})
 
     @staticmethod
     @cache
@@ -101,6 +118,14 @@ class Gesticon:
         Meaning(kind='gesture', name='SHRUG')
         """
         return self._exact.get(words_of(name))
+
+    def clip_part(self, name: str) -> str:
+        """Return the part of the body that a clip is for, "head" or "arms"; "" if it is not told.
+
+        >>> Gesticon.bundled().clip_part("nod"), Gesticon.bundled().clip_part("wave")
+        ('head', '')
+        """
+        return self._parts.get(words_of(name), "")
 
     def nearest(self, name: str, kinds: Collection[str] = get_args(MeaningKind)) -> Meaning | None:
         """Return what the words of a name lead to: most of them, and then the first.

@@ -1,4 +1,4 @@
-"""Gestures of a tagged text: the same behaviours as in a block of BML, at the times of its words."""
+"""Gestures of a tagged text: the behaviours of BML, at the times of its words."""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace

@@ -15,7 +15,7 @@ BMLA = "http://www.asap-project.org/bmla"
 """Namespace of interrupt, activate, preplan, chunkAfter and parametervaluechange."""
 
 CUBELING = "urn:cubeling:behaviour"
-"""Namespace of attributes named after the fields of `GestureExpressivity`, of `tempo` and `clip`."""
+"""Namespace of `tempo`, `clip`, and attributes named as the fields of `GestureExpressivity`."""
 
 GESTURE_SYNCS = ("start", "ready", "strokeStart", "stroke", "strokeEnd", "relax", "end")
 """Sync points of gesture, pointing and head."""

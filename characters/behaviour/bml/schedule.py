@@ -210,13 +210,17 @@ class Scheduler:
                     waiting.append(_impossible(name, not_performed(reference)))
 
     def _give_up_a_time(self, behaviour: Behaviour, failure: Failure) -> bool:
-        """Let a behaviour that yields give up its last time, if it has others; return whether."""
+        """Let a behaviour that yields give up its last time; return whether it has done so.
+
+        What is tied to another behaviour by one time only is nothing without it.
+        """
         timing = self._timings.get(behaviour.id)
-        if not behaviour.yielding or len(behaviour.syncs) < 2 or timing is None:
-            return False
-        if failure.type != "IMPOSSIBLE_TO_SCHEDULE":
+        if not behaviour.yielding or not behaviour.syncs or timing is None:
             return False
         last = max(behaviour.syncs, key=lambda sync: timing.index.get(sync, math.inf))
+        alone = len(behaviour.syncs) == 1 and bool(behaviour.syncs[last].behaviour)
+        if alone or failure.type != "IMPOSSIBLE_TO_SCHEDULE":
+            return False
         syncs = {sync: at for sync, at in behaviour.syncs.items() if sync != last}
         kept = replace(behaviour, syncs=syncs)
         self._behaviours[behaviour.id] = self._parts[behaviour.id] = kept
@@ -304,7 +308,9 @@ def _conflicts(
 def _timing(behaviour: Behaviour, block: Block, estimator: TimingEstimator) -> Timing:
     if behaviour.namespace == BMLA and behaviour.kind in CONTROLS:
         return CONTROLS[behaviour.kind]
-    return estimator.timing(behaviour, block)
+    timing = estimator.timing(behaviour, block)
+    # A dialect's looks may overlap: the last one counts.
+    return replace(timing, occupies=frozenset()) if behaviour.yielding else timing
 
 
 def _failure_type(behaviour: Behaviour, error: CannotRealize) -> WarningType:

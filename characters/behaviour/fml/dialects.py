@@ -1,4 +1,4 @@
-"""The intentions of others' FML: Greta's types and references, by the words that they consist of."""
+"""The intentions of others' FML: Greta's types and references, by their words."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The layer that plays clips over the joints that they are for: `CharacterCommand.behaviour.clips`."""
+"""The layer that plays clips over their joints: `CharacterCommand.behaviour.clips`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,6 +15,7 @@ from cubeling.characters.motion.layers import lay_over
 from cubeling.characters.motion.modifiers import Stretch
 from cubeling.characters.motion.motion import Motion
 from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.masks import subtree
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.smoothing import low_pass
 from cubeling.characters.synthesis.gestures.library import gesture_joints
@@ -33,6 +34,9 @@ FREE_LAG_S = 0.2
 
 MIN_MOVED_RAD = np.deg2rad(3.0)
 """A joint that a clip turns less than this is not one that it is for [rad]."""
+
+MIN_MOVED_SHARE = 0.1
+"""Nor one that it turns less than this share of what it turns most."""
 
 SAMPLES = 24
 """Moments at which a clip is looked at."""
@@ -102,16 +106,18 @@ def clip_joints(character: Character, name: str) -> NDArray[np.intp]:
     """
     anatomy, skeleton = character.anatomy, character.skeleton
     joints = gesture_joints(skeleton, anatomy)
-    head = {anatomy.joint(part) for part in ("neck", "head")}
-    meaning = Gesticon.bundled().meaning(name)
-    if meaning is not None and meaning.kind == "clip" and meaning.name == "head":
-        return np.array([joint for joint in joints if joint in head], np.intp)
-    trunk = {anatomy.joint(part) for part in ("spine", "chest", "upperChest")}
-    if meaning is not None and meaning.kind == "clip" and meaning.name == "arms":
-        return np.array([joint for joint in joints if joint not in head | trunk], np.intp)
+    part = Gesticon.bundled().clip_part(name)
+    neck, head = anatomy.joint("neck"), anatomy.joint("head")
+    above = set() if head is None else set(subtree(skeleton, head if neck is None else neck))
+    if part == "head":
+        return np.array([joint for joint in joints if joint in above], np.intp)
+    if part == "arms":
+        trunk = {anatomy.joint(each) for each in ("spine", "chest", "upperChest")}
+        return np.array([joint for joint in joints if joint not in above | trunk], np.intp)
     clip = character.clips[name]
     times = np.linspace(0.0, clip.duration, SAMPLES)
     turns = np.stack([clip.sample(time).rotations for time in times.tolist()])
     apart = rotations.to_rotation_vector(rotations.multiply(rotations.conjugate(turns[0]), turns))
-    moved = np.linalg.norm(apart, axis=-1).max(axis=0) > MIN_MOVED_RAD
-    return np.array([joint for joint in joints if moved[joint]], np.intp)
+    moved = np.linalg.norm(apart, axis=-1).max(axis=0)
+    least = max(MIN_MOVED_RAD, MIN_MOVED_SHARE * float(moved.max(initial=0.0)))
+    return np.array([joint for joint in joints if moved[joint] > least], np.intp)

@@ -12,19 +12,22 @@ from cubeling.characters.behaviour.bml.dialects.repair import UNDECLARED, read_r
 from cubeling.characters.behaviour.bml.dialects.times import mend_times
 from cubeling.characters.behaviour.bml.document import BML, BMLA, SYNCS, Block
 from cubeling.characters.behaviour.bml.parser import LIMITS, MAX_BEHAVIOURS, block_of_elements
-from cubeling.characters.errors import CharacterError
 from cubeling.characters.xml_elements import XmlElement
 
 CONTAINERS = ("bml", "act", "fml", "fml-apml")
 """Elements whose content is read as if it stood where they stand."""
 
 SILENT = {
+    "lip": "the mouth follows the voice",
     "lips": "the mouth follows the voice",
     "viseme": "the mouth follows the voice",
     "curves": "face and head follow the voice",
     "saccade": "eyes dart by themselves",
     "event": "no messages are sent",
     "boundary": "the voice pauses where it wants",
+    "intonation_break": "the voice pauses where it wants",
+    "intonation_tone": "the voice has its own melody",
+    "turn": "whose turn it is, nobody keeps",
     "blink": "eyes blink by themselves",
     "interrupt": "nothing is interrupted by it",
 }

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from cubeling.characters.behaviour.bml.document import CUBELING
-from cubeling.characters.behaviour.gesticon import Gesticon, words_of
+from cubeling.characters.behaviour.gesticon import Gesticon, Meaning, words_of
 from cubeling.characters.xml_elements import XmlElement
 
 Notes = list[tuple[int, str]]
@@ -50,11 +50,14 @@ LOOKS = {"left": "LEFT", "right": "RIGHT", "up": "UP", "down": "DOWN"}
 LOOK_ASIDE_DEG = "25"
 """How far a look goes aside that does not say it [degrees]."""
 
+AHEAD = ("front", "forward", "center", "straight", "interlocutor", "addressee")
+"""Targets of looks that are where the viewer is."""
+
 ACCENTS = {"weak": 0.3, "reduced": 0.3, "none": 0.2, "medium": 0.5, "strong": 0.8}
 """How far brows are raised by the level of a pitch accent."""
 
 NO_NAMES = frozenset(
-    "facs rotation orient orientation position lexicalized at eyebrows eyelids lids mouth".split()
+    ["facs", "rotation", "orient", "orientation", "position", "lexicalized", "at", "eyebrows", "eyelids", "lids", "mouth"]
 )
 """Types of the draft of 2007 that say of what kind a behaviour is, and not which."""
 
@@ -118,7 +121,7 @@ def _gesture(element: XmlElement, notes: Notes) -> list[XmlElement]:
     if not names:
         return [element]
     meaning = next(filter(None, map(gesticon.meaning, names)), None)
-    near = meaning or next(filter(None, map(gesticon.nearest, names)), None)
+    near = meaning or _nearest(names, ("gesture",)) or _nearest(names, ("head", "face"))
     if meaning is None:
         element.attributes[f"{{{CUBELING}}}clip"] = names[0]
     element.attributes["lexeme"] = names[0] if near is None else near.name
@@ -128,6 +131,15 @@ def _gesture(element: XmlElement, notes: Notes) -> list[XmlElement]:
     if len(hands) == 1 and "mode" not in element.attributes:
         element.attributes["mode"] = f"{hands.pop()}_HAND"
     return [element]
+
+
+def _nearest(names: Iterable[str], kinds: tuple[str, ...]) -> Meaning | None:
+    """Return what the words of the first name that has any lead to, "neutral" if nothing else."""
+    for name in names:
+        found = list(Gesticon.bundled().within(name, kinds))
+        if found:
+            return next((each for each in found if each.name != "neutral"), found[0])
+    return None
 
 
 def _shoulders(element: XmlElement, notes: Notes) -> list[XmlElement]:
@@ -184,8 +196,8 @@ def _face(element: XmlElement, notes: Notes) -> list[XmlElement]:
         return [element]
     names = [name for name in _names(element) if name]
     names += [f"{part} {given[part]}" for part in ("eyebrows", "mouth", "eyelids") if part in given]
-    gesticon = Gesticon.bundled()
-    near = next(filter(None, (gesticon.nearest(name, ("face",)) for name in names)), None)
+    near = _nearest(names, ("face",))
+    element.parts = [each for each in element.children if each.tag != "description"]
     if given.get("type", "").strip().lower() in NO_NAMES or near is not None:
         given.pop("type", None)
     if near is not None and names[0].strip().lower() != near.name.lower():
@@ -213,11 +225,25 @@ def _gaze(element: XmlElement, notes: Notes) -> list[XmlElement]:
         far = _NUMBER.fullmatch(angle) and float(angle) != 0.0
         given["offsetDirection"] = _both(side)
         given["offsetAngle"] = angle if far else LOOK_ASIDE_DEG
-    if not given.get("target", "").strip():
+    for turned in element.children:  # SmartBody's bias of a joint, to the left and down
+        left, down = (_number(turned.attributes.get(key, "")) for key in ("heading", "pitch"))
+        if left or down:
+            side = (["LEFT" if left > 0 else "RIGHT"] if left else []) + (
+                ["DOWN" if down > 0 else "UP"] if down else []
+            )
+            given["offsetDirection"] = _both(side)
+            given["offsetAngle"] = f"{max(abs(left), abs(down)):g}"
+    target = given.get("target", "").strip()
+    given["target"] = "viewer" if target.lower() in AHEAD else target
+    if not target:
         given["target"] = "viewer"
         if not side:
             notes.append((element.line, "a look at nothing is one at the viewer"))
     return [element]
+
+
+def _number(text: str) -> float:
+    return float(text) if _NUMBER.fullmatch(text.strip()) else 0.0
 
 
 def _both(sides: list[str]) -> str:
@@ -230,8 +256,7 @@ def _both(sides: list[str]) -> str:
 def _posture(element: XmlElement, notes: Notes) -> list[XmlElement]:
     names = [name for name in _names(element) if name]
     names += [f"lean {name}" for name in (element.attributes.get("direction", ""),) if name]
-    gesticon = Gesticon.bundled()
-    near = next(filter(None, (gesticon.nearest(name, ("posture",)) for name in names)), None)
+    near = _nearest(names, ("posture",))
     element.tag = element.tag if element.tag == "postureShift" else "posture"
     stances = [child for child in element.children if child.tag in ("stance", "pose")]
     if near is not None and not stances:

@@ -1,4 +1,4 @@
-"""The times of dialects: durations instead of ends, before the start, at marks that are not there."""
+"""The times of dialects: durations, times before the start, marks that are not there."""
 
 from collections.abc import Iterable, Sequence
 
@@ -6,6 +6,9 @@ from cubeling.characters.behaviour.bml.document import SYNC_NAMES, SYNCS
 from cubeling.characters.behaviour.bml.parser import SECONDS, reference
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.xml_elements import XmlElement
+
+OLD_NAMES = {"stroke_start": "strokeStart", "stroke_end": "strokeEnd", "attack": "attackPeak"}
+"""Sync points as they are written elsewhere."""
 
 ALIKE = (
     ("start",),
@@ -30,6 +33,10 @@ def mend_times(elements: Sequence[XmlElement], notes: list[tuple[int, str]]) -> 
     the block starts earlier: all numbers are later by that.
     """
     behaviours = [each for each in elements if not each.namespace]
+    for each in behaviours:
+        for old, new in OLD_NAMES.items():
+            if old in each.attributes:
+                each.attributes.setdefault(new, each.attributes.pop(old))
     _durations(behaviours, notes)
     _shift(behaviours, notes)
     kinds = {each.attributes["id"]: each for each in behaviours if each.attributes.get("id")}
@@ -67,7 +74,7 @@ def _shift(behaviours: Sequence[XmlElement], notes: list[tuple[int, str]]) -> No
             seconds = _seconds(each, sync)
             if seconds is not None and first is not None:
                 each.attributes[sync] = f"{seconds - earliest:g}"
-            elif seconds == 0.0 and sync == "start":
+            elif seconds == 0.0 and sync == "start" and len(timed) == 1:
                 del each.attributes[sync]  # as early as it can: what refers to it may be earlier
     if first is not None:
         notes.append(
