@@ -32,6 +32,9 @@ from cubeling.characters.behaviour.bml.timing import CannotRealize, Timing, Timi
 MAX_ATTEMPTS = 25
 """Times that a block is planned, each without what could not be met the time before."""
 
+YIELDING_ATTEMPTS = 3
+"""So many times more if behaviours give up their times one after the other."""
+
 CONTROLS = {
     "interrupt": Timing(("start", "end"), (0.0,), (0.0,), (0.0,)),
     "activate": Timing(("start", "end"), (0.0,), (0.0,), (0.0,)),
@@ -148,7 +151,8 @@ class Scheduler:
         BlockFailed
             If something that is required cannot be performed, or too much contradicts itself.
         """
-        for _ in range(MAX_ATTEMPTS):
+        yielding = any(each.yielding for each in self._block.behaviours)
+        for _ in range(MAX_ATTEMPTS * (YIELDING_ATTEMPTS if yielding else 1)):
             try:
                 tracks = self._attempt(start)
             except Contradictory as error:

@@ -17,8 +17,8 @@ What is not an intention, speech above all, is BML and stays as it is. An elemen
 from dataclasses import replace
 from functools import cache
 
+from cubeling.characters.behaviour.bml import parser
 from cubeling.characters.behaviour.bml.document import BML, SYNCS, Behaviour, Block, SyncReference
-from cubeling.characters.behaviour.bml.parser import MAX_BEHAVIOURS, parse_as
 from cubeling.characters.behaviour.fml.dialects import by_gesticon, in_lexicon
 from cubeling.characters.behaviour.fml.lexicon import Lexicon, Shown
 from cubeling.characters.errors import CharacterError
@@ -44,7 +44,7 @@ def behaviours_of(fml: str | bytes, lexicon: Lexicon | None = None) -> Block:
     CharacterError
         If the document cannot be read, or a number in it is none.
     """
-    return shown_by(parse_as(fml, ROOTS), lexicon)
+    return shown_by(parser.parse_as(fml, ROOTS), lexicon)
 
 
 def shown_by(block: Block, lexicon: Lexicon | None = None) -> Block:
@@ -71,8 +71,10 @@ def shown_by(block: Block, lexicon: Lexicon | None = None) -> Block:
             behaviours.append(named)
         else:
             behaviours.append(replace(behaviour, namespace=FML, syncs={}))
-    if len(behaviours) > MAX_BEHAVIOURS:
-        raise CharacterError(f"FML: more than {MAX_BEHAVIOURS} behaviours; send several documents")
+    if len(behaviours) > parser.MAX_BEHAVIOURS:
+        raise CharacterError(
+            f"FML: more than {parser.MAX_BEHAVIOURS} behaviours; send several documents"
+        )
     return replace(block, behaviours=tuple(behaviours))
 
 

@@ -5,13 +5,15 @@ and Pelachaud 2008), and SmartBody's (Thiébaux et al. 2008). What a document me
 it can be told from it; what nobody here can do is left to the realizer, which warns of it.
 """
 
+from collections import Counter
 from dataclasses import replace
 
+from cubeling.characters.behaviour.bml import parser
 from cubeling.characters.behaviour.bml.dialects.kinds import CONVERSIONS, convert
 from cubeling.characters.behaviour.bml.dialects.repair import UNDECLARED, read_repaired
 from cubeling.characters.behaviour.bml.dialects.times import mend_times
 from cubeling.characters.behaviour.bml.document import BML, BMLA, SYNCS, Block
-from cubeling.characters.behaviour.bml.parser import LIMITS, MAX_BEHAVIOURS, block_of_elements
+from cubeling.characters.behaviour.bml.parser import block_of_elements
 from cubeling.characters.xml_elements import XmlElement
 
 CONTAINERS = ("bml", "act", "fml", "fml-apml")
@@ -62,7 +64,7 @@ def parse_dialect(document: str | bytes) -> Block:
         If it is no XML, has a DTD with something in it, is too large, or has no behaviours.
     """
     notes: list[tuple[int, str]] = []
-    root = read_repaired(document, LIMITS, notes)
+    root = read_repaired(document, parser.LIMITS, notes)
     front = _Front(notes)
     block = block_of_elements(front.standard(root), CONTAINERS)
     lines = sorted(dict.fromkeys(notes))
@@ -80,6 +82,7 @@ class _Front:
         self._notes = notes
         self._found: list[tuple[XmlElement, bool]] = []
         self._ids: dict[str, XmlElement] = {}
+        self._numbers = Counter[str]()
         self._left_out: dict[str, list[int]] = {}
         self._block: dict[str, str] = {}
 
@@ -130,7 +133,7 @@ class _Front:
         One that only has more to say of an earlier one is added to that.
         """
         name = element.attributes.get("id", "").strip()
-        if not name or len(self._ids) > MAX_BEHAVIOURS:  # the parser refuses so many
+        if not name or len(self._ids) > parser.MAX_BEHAVIOURS:  # the parser refuses so many
             return True
         first = self._ids.get(name)
         if first is not None and first.tag == element.tag and not _names_something(element):
@@ -138,12 +141,18 @@ class _Front:
             first.parts += element.parts
             return False
         if first is not None:
-            numbered = (f"{name}-{number}" for number in range(2, 2 * MAX_BEHAVIOURS))
-            again = next(each for each in numbered if each not in self._ids)
+            again = self._next_id(name)
             self._notes.append((element.line, f'a second "{name}" is called "{again}"'))
             element.attributes["id"] = name = again
         self._ids[name] = element
         return True
+
+    def _next_id(self, name: str) -> str:
+        # Ids are never given back, so a number that is taken stays taken.
+        self._numbers[name] += 1
+        while f"{name}-{self._numbers[name] + 1}" in self._ids:
+            self._numbers[name] += 1
+        return f"{name}-{self._numbers[name] + 1}"
 
     def _take_attributes(self, root: XmlElement) -> None:
         """Keep the attributes of a block that the standard has."""

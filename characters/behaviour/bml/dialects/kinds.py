@@ -57,7 +57,8 @@ ACCENTS = {"weak": 0.3, "reduced": 0.3, "none": 0.2, "medium": 0.5, "strong": 0.
 """How far brows are raised by the level of a pitch accent."""
 
 NO_NAMES = frozenset(
-    ["facs", "rotation", "orient", "orientation", "position", "lexicalized", "at", "eyebrows", "eyelids", "lids", "mouth"]
+    ("facs", "rotation", "orient", "orientation", "position", "lexicalized", "at")
+    + ("eyebrows", "eyelids", "lids", "mouth")
 )
 """Types of the draft of 2007 that say of what kind a behaviour is, and not which."""
 
@@ -214,7 +215,7 @@ def _gaze(element: XmlElement, notes: Notes) -> list[XmlElement]:
     """Look at somebody, or aside, with what SmartBody calls a joint range."""
     given = element.attributes
     element.tag = "gaze" if element.tag in ("head", "eyes") else element.tag
-    ranges = [word for word in words_of(given.get("joint-range", "").lower())]
+    ranges = words_of(given.get("joint-range", "").lower())
     influence = [own for name, own in INFLUENCES.items() if name.lower() in ranges]
     if influence:
         given.setdefault("influence", influence[-1])
