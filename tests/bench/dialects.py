@@ -38,7 +38,7 @@ from cubeling.app.behaving.player import (
     place_unknown,
 )
 from cubeling.app.behaving.voice import SilentSource
-from cubeling.characters import Animator, Character, CharacterError, RootDelta
+from cubeling.characters import Animator, Character, CharacterError, PosedCharacter, RootDelta
 from cubeling.characters.behaviour import Block, BmlWarning, CharacterRealizer, RealizedFrame
 from cubeling.characters.behaviour.bml import BMLA
 from cubeling.characters.behaviour.bml.dialects import parse_dialect
@@ -111,7 +111,7 @@ def report_of(path: Path, body: Character) -> Report:
             dropped += int(left_out[1] or 1) if left_out else 0
     scheduled = player.realizer.scheduled
     shown = {each.behaviour.line for each in scheduled if _is_visible(each, player, body)}
-    meant = replace(meant, behaviours=[b for b in meant.behaviours if b.namespace != BMLA])
+    meant = replace(meant, behaviours=tuple(b for b in meant.behaviours if b.namespace != BMLA))
     wanted = [each.line for each in meant.behaviours]
     report.there, report.dropped = len(wanted), dropped
     report.visible = sum(line in shown for line in wanted)
@@ -150,15 +150,15 @@ def _is_visible(scheduled: Scheduled, player: BehaviourPlayer, body: Character) 
     return False
 
 
-def _differ(one, other) -> bool:
+def _differ(one: PosedCharacter, other: PosedCharacter) -> bool:
     a, b = one.pose, other.pose
     apart = rotations.to_rotation_vector(
         rotations.multiply(rotations.conjugate(a.rotations), b.rotations)
     )
     turned = float(np.degrees(np.linalg.norm(apart, axis=-1)).max())
     moved = float(np.abs(one.table_from_character - other.table_from_character).max())
-    faces = [0.0 if pose.morphs is None else pose.morphs for pose in (a, b)]
-    face = float(np.abs(np.subtract(*faces)).max(initial=0.0))
+    shown, quiet = (np.zeros(1) if pose.morphs is None else pose.morphs for pose in (a, b))
+    face = float(np.abs(shown - quiet).max(initial=0.0))
     return turned > MIN_TURN_DEG or face > MIN_FACE or moved > 1e-3
 
 
@@ -188,10 +188,10 @@ def main() -> int:
     warnings = sum((each.warnings for each in reports), Counter[str]())
     there, visible = (sum(getattr(r, key) for r in reports) for key in ("there", "visible"))
     silent = sum(len(each.silent) for each in reports)
-    performed, strict = sum(r.performed for r in reports), sum(r.strict == "read" for r in reports)
+    performed, read = sum(r.performed for r in reports), sum(r.strict == "read" for r in reports)
     refused = [each for each in reports if each.refused]
     console.print(
-        f"{len(reports)} files: {strict} read strictly; {performed} performed, "
+        f"{len(reports)} files: {read} read strictly; {performed} performed, "
         f"{len(reports) - performed - len(refused)} hardly, {len(refused)} refused\n"
         f"{there} behaviours: {visible} visible, {sum(r.warned for r in reports)} warned about, "
         f"{silent} silent; {sum(r.dropped for r in reports)} more come by themselves\nwarnings: "

@@ -95,17 +95,16 @@ def perform(document: str | Block) -> str:
     for frame in range(26):
         for each in performing.update(frame / 25.0):
             feedback_xml(each)
-            if _is_refusal(each) and not refusal:
-                refusal = each.description
+            refusal = refusal or _refusal_in(each)
         performing.active(frame / 25.0)
     return refusal
 
 
-def _is_refusal(feedback: Feedback) -> bool:
-    """Return whether feedback is a warning of a whole block that is not only a note."""
+def _refusal_in(feedback: Feedback) -> str:
+    """Return why a whole block was refused, if feedback says so, or ""."""
     if not isinstance(feedback, BmlWarning) or feedback.type == "READ_AS_DIALECT":
-        return False
-    return ":" not in feedback.id
+        return ""
+    return "" if ":" in feedback.id else feedback.description
 
 
 def mean(document: str) -> str:

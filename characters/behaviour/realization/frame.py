@@ -5,7 +5,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from cubeling.characters.behaviour.bml import CUBELING, Behaviour, CannotRealize, Scheduled
+from cubeling.characters.behaviour.bml import (
+    CUBELING as CUBELING,
+    Behaviour,
+    CannotRealize,
+    Scheduled,
+)
 from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.intents import (

@@ -72,4 +72,5 @@ def test_strictly_the_same_file_is_refused(tmp_path):
     player = BehaviourPlayer(HUMAN, PatientSource(speech_of, "en"), BehaviourOptions(strict=True))
     player.play_block(ACT)
     (warning,) = player.update(0.0).feedback
+    assert isinstance(warning, BmlWarning)
     assert warning.type == "PARSING_FAILURE"

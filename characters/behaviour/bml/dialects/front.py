@@ -14,6 +14,7 @@ from cubeling.characters.behaviour.bml.dialects.repair import UNDECLARED, read_r
 from cubeling.characters.behaviour.bml.dialects.times import mend_times
 from cubeling.characters.behaviour.bml.document import BML, BMLA, SYNCS, Block
 from cubeling.characters.behaviour.bml.parser import block_of_elements
+from cubeling.characters.errors import CharacterError
 from cubeling.characters.xml_elements import XmlElement
 
 CONTAINERS = ("bml", "act", "fml", "fml-apml")
@@ -66,6 +67,9 @@ def parse_dialect(document: str | bytes) -> Block:
     notes: list[tuple[int, str]] = []
     root = read_repaired(document, parser.LIMITS, notes)
     front = _Front(notes)
+    if root.tag not in (*CONTAINERS, *SYNCS, *CONVERSIONS):
+        known = f"<{'>, <'.join(CONTAINERS)}>"
+        raise CharacterError(f"BML, line {root.line}: <{root.tag}> is no {known} nor a behaviour")
     block = block_of_elements(front.standard(root), CONTAINERS)
     lines = sorted(dict.fromkeys(notes))
     texts = [f"line {line}: {text}" for line, text in lines[:MAX_NOTES]]
@@ -89,6 +93,10 @@ class _Front:
     def standard(self, root: XmlElement) -> XmlElement:
         """Return a `bml` element with the behaviours of a root, in the standard's form."""
         self._read(root)
+        if not self._found and not self._left_out and not self._block.get("id"):
+            raise CharacterError(
+                f"BML, line {root.line}: a block without an id, in which nothing is to be done"
+            )
         made: list[tuple[XmlElement, bool]] = []
         for element, required in self._found:
             free = element.namespace or element.tag == "constraint"
@@ -98,8 +106,6 @@ class _Front:
             times = f", {len(lines)} times" if len(lines) > 1 else ""
             self._notes.append((lines[0], f"<{tag}> is left out{times}: {SILENT[tag]}"))
         mend_times([each for each, _ in made if each.tag != "constraint"], self._notes)
-        if not made:
-            self._notes.append((root.line, "nothing in it can be performed"))
         inside = [
             XmlElement("required", "", {}, each.line, [each]) if required else each
             for each, required in made
@@ -110,6 +116,8 @@ class _Front:
         """Find the behaviours of an element, which may be one itself."""
         was = element.namespace
         _make_plain(element)
+        if element.tag in CONTAINERS:
+            element.namespace = ""
         if was not in ("", BML) and not element.namespace and element.tag in CONTAINERS:
             self._notes.append((element.line, f"namespace {was} is read as that of BML 1.0"))
         inside = required or element.tag == "required"

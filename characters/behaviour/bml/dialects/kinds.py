@@ -190,7 +190,7 @@ def _face(element: XmlElement, notes: Notes) -> list[XmlElement]:
     if units or any(child.attributes.get("au") for child in element.children):
         given.pop("type", None)
         given.pop("au", None)
-        amount = {key: given[key] for key in ("amount", "side") if key in given}
+        amount = {key: value for key, value in given.items() if key in ("amount", "side")}
         element.parts += [
             XmlElement("faceFacs", "", {"au": unit, **amount}, element.line) for unit in units[:20]
         ]
