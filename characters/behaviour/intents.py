@@ -168,7 +168,7 @@ class ClipIntent:
     """Tells it from others, from frame to frame."""
 
     name: str
-    """Of the clip."""
+    """Name of the clip among those of the character; one that it lacks does nothing."""
 
     times: StrokeTimes
     """When; it is stretched from `start` to `end`."""
