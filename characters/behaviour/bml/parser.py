@@ -45,7 +45,8 @@ SECONDS = re.compile(rf"\s*[+-]?{_NUMBER}\s*")
 
 _REFERENCE = re.compile(rf"\s*(?:([^\s:]+):)?([^\s:]+):([^\s:]+?)\s*(?:([+-])\s*({_NUMBER})\s*)?")
 _SPACE = re.compile(r"\s+")
-_COMPOSITION = re.compile(r"(MERGE|REPLACE|APPEND)|APPEND-AFTER\(([^()]*)\)", re.IGNORECASE)
+COMPOSITION = re.compile(r"(MERGE|REPLACE|APPEND)|APPEND-AFTER\(([^()]*)\)", re.IGNORECASE)
+"""What the standard and AsapRealizer let a block do with those before it."""
 
 
 def parse(document: str | bytes) -> Block:
@@ -225,7 +226,7 @@ class _DocumentReader:
         return names
 
     def _composition(self, text: str) -> tuple[Composition, tuple[str, ...]]:
-        found = _COMPOSITION.fullmatch(text.strip())
+        found = COMPOSITION.fullmatch(text.strip())
         if found is None:
             known = "MERGE, APPEND, REPLACE, APPEND-AFTER(ids)"
             raise _error(self._root, f'composition "{text[:MAX_ID_CHARS]}" is none of {known}')

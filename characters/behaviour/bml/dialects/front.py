@@ -5,6 +5,7 @@ and Pelachaud 2008), and SmartBody's (Thiébaux et al. 2008). What a document me
 it can be told from it; what nobody here can do is left to the realizer, which warns of it.
 """
 
+import re
 from collections import Counter
 from dataclasses import replace
 
@@ -51,6 +52,8 @@ NAMING = frozenset({"lexeme", "type", "name", "au", "target", "start", "text"})
 
 SMARTBODY = frozenset({"joint-range", "action", "participant"})
 """Attributes of SmartBody's that are read."""
+
+_CHUNK_AFTER = re.compile(r"CHUNK-AFTER\(([^()]*)\)", re.IGNORECASE)
 
 MAX_NOTES = 200
 """Notes of one document; more are counted."""
@@ -167,8 +170,12 @@ class _Front:
         for key, value in root.attributes.items():
             if key == "character":
                 key = "characterId"
-            elif key == "composition" and value.strip().upper() == "BLEND":
-                value = "MERGE"
+            elif key == "composition":
+                chunk = _CHUNK_AFTER.fullmatch(value.strip())
+                if chunk is not None:
+                    key, value = f"{{{BMLA}}}chunkAfter", chunk[1]
+                elif not parser.COMPOSITION.fullmatch(value.strip()):
+                    value = "MERGE"  # Greta's "blend", and whatever others call it
             self._block.setdefault(key, value)
 
 
