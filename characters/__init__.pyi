@@ -38,7 +38,10 @@ from cubeling.characters.control.layers.upper_body import (
     safe_ranges_of as safe_ranges_of,
 )
 from cubeling.characters.control.loading import load_to_play as load_to_play
-from cubeling.characters.control.tagged_gestures import known_gestures as known_gestures
+from cubeling.characters.control.tagged_gestures import (
+    known_gestures as known_gestures,
+    meanings_of as meanings_of,
+)
 from cubeling.characters.errors import (
     CharacterError as CharacterError,
     CharacterWarning as CharacterWarning,

@@ -187,10 +187,10 @@ def _read_recording(audio: Path, tagged: TaggedText, language: str, command: str
 
 def _check_gestures(tagged: TaggedText, character: Character) -> None:
     """Refuse a gesture that the character does not know."""
-    from cubeling.characters import known_gestures
+    from cubeling.characters import meanings_of
 
     names = [span.name for span in tagged.spans]
-    known = known_gestures(character, names)
+    known = meanings_of(character, names)
     for name in names:
         if name not in known:
             raise AppError(

@@ -111,6 +111,11 @@ class Gesticon:
         """Return the one that comes with the program."""
         return Gesticon.load()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What names lead to, each once."""
+        return tuple(dict.fromkeys(meaning.name for meaning in self._exact.values()))
+
     def meaning(self, name: str) -> Meaning | None:
         """Return what a name leads to; None if it has no such name.
 

@@ -1,12 +1,13 @@
 """Gestures of a tagged text: the behaviours of BML, at the times of its words."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
 
 from cubeling.characters.behaviour.bml.document import Behaviour, Block, SyncReference
 from cubeling.characters.behaviour.bml.schedule import Scheduler
 from cubeling.characters.behaviour.bml.timing import CannotRealize, Scheduled
+from cubeling.characters.behaviour.gesticon import Gesticon
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.intents import BehaviourIntent
 from cubeling.characters.behaviour.realization.character_realizer import CharacterRealizer
@@ -14,6 +15,7 @@ from cubeling.characters.behaviour.realization.frame import RealizationContext
 from cubeling.characters.behaviour.realization.hand_kinds import meaning_of
 from cubeling.characters.behaviour.realization.surroundings import NamedPlaces
 from cubeling.characters.control.command import CharacterCommand, SpeechIntent
+from cubeling.characters.face.expressions import EXPRESSIONS
 from cubeling.characters.model.character import Character
 from cubeling.characters.speech.speech import GestureSpan
 
@@ -72,7 +74,13 @@ class TaggedGestures:
         )
 
 
-def known_gestures(character: Character, names: Sequence[str]) -> dict[str, str]:
+def known_gestures(character: Character) -> tuple[str, ...]:
+    """Return the names that a text may ask a character for, without their other spellings."""
+    names = (*GestureCollection.load_bundled().names, *Gesticon.bundled().names, *character.clips)
+    return tuple(meanings_of(character, dict.fromkeys((*names, *EXPRESSIONS))))
+
+
+def meanings_of(character: Character, names: Iterable[str]) -> dict[str, str]:
     """Return what names lead to that a text may ask a character for: gesture, head, face, clip.
 
     Those that it cannot perform are left out.
@@ -97,7 +105,7 @@ def spans_with_hands(character: Character, spans: Sequence[GestureSpan]) -> tupl
     """Return the gestures of a text that leave no hands for its rhythm."""
     if not spans:
         return ()
-    known = known_gestures(character, [span.name for span in spans])
+    known = meanings_of(character, [span.name for span in spans])
     return tuple(span for span in spans if known.get(span.name) in HANDS)
 
 
