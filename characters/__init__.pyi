@@ -33,12 +33,15 @@ from cubeling.characters.control.layers.layer import (
     LayerFactory as LayerFactory,
 )
 from cubeling.characters.control.layers.live_mouth import LiveMouthLayer as LiveMouthLayer
-from cubeling.characters.control.layers.speech import known_gestures as known_gestures
 from cubeling.characters.control.layers.upper_body import (
     dependent_joints_of as dependent_joints_of,
     safe_ranges_of as safe_ranges_of,
 )
 from cubeling.characters.control.loading import load_to_play as load_to_play
+from cubeling.characters.control.tagged_gestures import (
+    known_gestures as known_gestures,
+    meanings_of as meanings_of,
+)
 from cubeling.characters.errors import (
     CharacterError as CharacterError,
     CharacterWarning as CharacterWarning,

@@ -47,17 +47,17 @@ def open_lines(command: str | None, language: str, kind: MakeSource = PatientSou
     return kind(say_with(voice), language, voice.close)
 
 
-def read_document(path: Path) -> str:
-    """Return the BML or FML of a file that can be read.
+def read_document(path: Path, *, strict: bool = False) -> bytes:
+    """Return the BML or FML of a file that can be read; drafts and dialects unless `strict`.
 
     Raises
     ------
     CharacterError
         It is none; the message names the file.
     """
-    text = BEHAVIOUR_FILE.read_text(path)
+    document = BEHAVIOUR_FILE.read(path)
     try:
-        block_of(text)
+        block_of(document, strict=strict)
     except CharacterError as error:
         raise CharacterError(f"{path}: {error}") from None
-    return text
+    return document

@@ -2,9 +2,10 @@
 
 import math
 import re
+import zlib
 from collections import deque
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +25,11 @@ from cubeling.characters import (
     SpeechIntent,
 )
 from cubeling.characters.behaviour import (
+    BML,
     NEUTRAL,
     Block,
     BmlWarning,
+    CannotRealize,
     CharacterRealizer,
     Feedback,
     GestureCollection,
@@ -39,7 +42,9 @@ from cubeling.characters.behaviour import (
     behaviours_of,
     numbers_of,
     parse,
+    parse_dialect,
     retime_speeches,
+    shown_by,
 )
 from cubeling.characters.speech import Utterance
 
@@ -55,6 +60,9 @@ LEFT, RIGHT = np.array([0.4, 0.12, 0.25]), np.array([-0.4, 0.12, 0.25])
 EYE_SHARE = 0.88
 """Height of the eyes of a body without eyes, as a part of its height."""
 
+
+MAX_PLACES = 64
+"""Places by name, those included that are given to unknown targets."""
 
 MAX_RECENT_LETTERS = 20_000
 """Letters of the lines whose sound is kept, besides the last one."""
@@ -75,6 +83,9 @@ class BehaviourOptions:
 
     targets: Mapping[str, NDArray[np.float64]] | None = None
     """Places by name besides viewer, cube, left and right, (3,) in the table frame [m]."""
+
+    strict: bool = False
+    """Whether only BML 1.0 and FML are read; else also drafts and dialects, with warnings."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +122,7 @@ class BehaviourPlayer:
         self.emotion = options.emotion
         """What it feels throughout."""
         self._lines = lines
+        self._strict = options.strict
         self._animator = Animator(character, place=RootDelta(), seed=options.seed)
         self._ways = WalkingTimes(character)
         self._refused: list[str] = []
@@ -135,9 +147,15 @@ class BehaviourPlayer:
     def play_block(self, document: str | bytes) -> None:
         """Accept a document of BML or FML; it counts from the next update on."""
         try:
-            self.realizer.accept(block_of(document))
+            block = block_of(document, strict=self._strict)
         except CharacterError as error:
             self._refused.append(str(error))
+            return
+        if not self._strict:
+            block = replace(
+                block, notes=(*block.notes, *place_unknown(block, self.who.surroundings))
+            )
+        self.realizer.accept(block)
 
     def update(self, now: float) -> BehaviourFrame:
         """Advance to a time [s] and return the frame."""
@@ -189,16 +207,42 @@ class BehaviourPlayer:
         self._place = RootDelta(float(placed[0, 3]), float(placed[2, 3]), self.who.surroundings.yaw)
 
 
-def block_of(document: str | bytes) -> Block:
+def block_of(document: str | bytes, *, strict: bool = False) -> Block:
     """Return the block of a document of BML, or of FML by the usual lexicon.
+
+    Unless `strict`, drafts and dialects are read too; `Block.notes` says what was changed.
 
     Raises
     ------
     CharacterError
         If it is none.
     """
+    if not strict:
+        return shown_by(parse_dialect(document))
     is_fml = b"<fml" in document if isinstance(document, bytes) else "<fml" in document
     return behaviours_of(document) if is_fml else parse(document)
+
+
+def place_unknown(block: Block, places: NamedPlaces) -> Iterator[str]:
+    """Give places to the targets of a block that nobody knows, and yield a note on each.
+
+    A name has the same place each time: somewhere beside the viewer, or on the table for a thing.
+    """
+    for behaviour in block.behaviours:
+        name = behaviour.get("target").strip().lower()
+        if not name or behaviour.namespace != BML or len(places.places) >= MAX_PLACES:
+            continue
+        try:
+            places.point(name)
+        except CannotRealize:
+            share = zlib.crc32(name.encode()) / 2**32 - 0.5
+            aside = math.copysign(0.15 + 0.5 * abs(share), share)
+            low = behaviour.kind in ("pointing", "locomotion")
+            places.places[name] = VIEWER + (aside, -0.12 if low else 0.0, -0.4 if low else 0.0)
+            yield (
+                f'line {behaviour.line}: "{name[:80]}" is given a place beside the viewer; '
+                f"--target {name[:80]}=x,y,z gives it its own"
+            )
 
 
 def command_of(

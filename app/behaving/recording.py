@@ -78,7 +78,7 @@ class BehaviourRecording:
 
 def record_behaviour(
     player: BehaviourPlayer,
-    documents: Sequence[str],
+    documents: Sequence[str | bytes],
     rate: float,
     *,
     together: bool = False,

@@ -73,6 +73,9 @@ def behave(
         str, typer.Option(help="Who performs: bundled, or a .glb, .gltf or .vrm file.")
     ] = "human",
     own_motions_only: OwnMotionsOption = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Read BML 1.0 and FML only, no drafts and dialects.")
+    ] = False,
     target: Annotated[
         list[str] | None,
         typer.Option(help="A place for target=NAME, as NAME=x,y,z in metres; may be repeated."),
@@ -135,14 +138,14 @@ def behave(
     from cubeling.characters.speech import blood_of
 
     how = GestureExpressivity(spatial, openness, fluidity, bias, tension, power)
-    options = BehaviourOptions(how, feels, seed, places)
+    options = BehaviourOptions(how, feels, seed, places, strict)
     body = with_root_joint(load_to_play(character, own_motions_only=own_motions_only))
     if serve is not None:
-        first = [read_document(file) for file in files or []]
+        first = [read_document(file, strict=strict) for file in files or []]
         shown = (pixels, view) if window else None
         _serve(serve, token, body, options, first, voice, language, rate, shown)
         return
-    documents = [read_document(file) for file in files or []]
+    documents = [read_document(file, strict=strict) for file in files or []]
     console = Console(highlight=False)
     lines = open_lines(voice, language)
     try:
@@ -162,7 +165,7 @@ def _serve(
     told: str,
     body: Character,
     options: BehaviourOptions,
-    first: list[str],
+    first: list[bytes],
     voice: str | None,
     language: str,
     rate: float,

@@ -187,11 +187,13 @@ def _read_recording(audio: Path, tagged: TaggedText, language: str, command: str
 
 def _check_gestures(tagged: TaggedText, character: Character) -> None:
     """Refuse a gesture that the character does not know."""
-    from cubeling.characters import known_gestures
+    from cubeling.characters import meanings_of
 
-    known = known_gestures(character)
-    for span in tagged.spans:
-        if span.name not in known:
+    names = [span.name for span in tagged.spans]
+    known = meanings_of(character, names)
+    for name in names:
+        if name not in known:
             raise AppError(
-                f"{character.name} has no gesture '{span.name}': choose one of {', '.join(known)}"
+                f"{character.name} has no gesture '{name}': `cubeling gesture list` names all, "
+                f"besides there are its clips ({', '.join(character.clips)})"
             )

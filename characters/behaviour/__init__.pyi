@@ -1,4 +1,5 @@
-from cubeling.characters.behaviour.bml.document import Block as Block
+from cubeling.characters.behaviour.bml.dialects import parse_dialect as parse_dialect
+from cubeling.characters.behaviour.bml.document import BML as BML, Block as Block
 from cubeling.characters.behaviour.bml.feedback import (
     BlockProgress as BlockProgress,
     BmlWarning as BmlWarning,
@@ -7,11 +8,15 @@ from cubeling.characters.behaviour.bml.feedback import (
 )
 from cubeling.characters.behaviour.bml.parser import parse as parse
 from cubeling.characters.behaviour.bml.realizer import Realizer as Realizer
+from cubeling.characters.behaviour.bml.timing import CannotRealize as CannotRealize
 from cubeling.characters.behaviour.expressivity import (
     NEUTRAL as NEUTRAL,
     GestureExpressivity as GestureExpressivity,
 )
-from cubeling.characters.behaviour.fml.planner import behaviours_of as behaviours_of
+from cubeling.characters.behaviour.fml.planner import (
+    behaviours_of as behaviours_of,
+    shown_by as shown_by,
+)
 from cubeling.characters.behaviour.gestures.collection import (
     GestureCollection as GestureCollection,
     gestures_in as gestures_in,

@@ -161,6 +161,20 @@ class PostureIntent:
 
 
 @dataclass(frozen=True)
+class ClipIntent:
+    """A clip of the character, laid over the joints that it is for."""
+
+    key: str
+    """Tells it from others, from frame to frame."""
+
+    name: str
+    """Name of the clip among those of the character; one that it lacks does nothing."""
+
+    times: StrokeTimes
+    """When; it is stretched from `start` to `end`."""
+
+
+@dataclass(frozen=True)
 class BehaviourIntent:
     """All that a body is asked to do besides going, acting and speaking."""
 
@@ -181,3 +195,6 @@ class BehaviourIntent:
 
     postures: tuple[PostureIntent, ...] = ()
     """Postures; the last one counts."""
+
+    clips: tuple[ClipIntent, ...] = ()
+    """Clips; later ones lie over earlier ones."""

@@ -14,6 +14,7 @@ from cubeling.characters.control.controllers import (
     first_suitable,
 )
 from cubeling.characters.control.layers import FrameContext, LayerFactory, apply_layers, layers_of
+from cubeling.characters.control.tagged_gestures import TaggedGestures
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.motion import RootDelta
@@ -75,6 +76,7 @@ class Animator:
         used = layers_of(character) if layers is None else layers
         self._layers = [layer(character, seed) for layer in used]
         self._expressivity = ExpressivityFilter()
+        self._tagged = TaggedGestures(character)
         self._rest = 1.0
         self._timestamp: float | None = None
 
@@ -107,6 +109,7 @@ class Animator:
         elapsed = 0.0 if self._timestamp is None else command.timestamp - self._timestamp
         self._timestamp = command.timestamp
         elapsed = min(max(elapsed, 0.0), MAX_TIME_STEP_S)
+        command = self._tagged.add(command)
         tempo = math.sqrt(self._expressivity.value.tempo)
         frame = self.controller.update(command, elapsed, tempo)
         activity = max(float(frame.acting), min(2.0 * frame.effort, 1.0))

@@ -270,6 +270,56 @@ def fml() -> Iterator[Growing]:
     )
 
 
+def dialects() -> Iterator[Growing]:
+    """Yield documents of the dialects of BML."""
+
+    def of(name: str, make: Make, largest: int) -> Growing:
+        return Growing(name, make, largest, "dialect of bml")
+
+    def act(inside: str) -> str:
+        return f"<act><bml>{inside}</bml></act>"
+
+    yield of("comments before the root", lambda n: "<!-- a -->" * n + act("<head/>"), 90_000)
+    yield of("an open comment", lambda n: "<!--" + "-" * n + act("<head/>"), 900_000)
+    yield of(
+        "spaces of a DTD", lambda n: f"<!DOCTYPE bml SYSTEM{' ' * n}[{' ' * n}]><bml/>", 400_000
+    )
+    yield of("quotes of a root", lambda n: "<bml " + "a='" * n + "/>", 300_000)
+    yield of("prefixes", lambda n: act("".join(f"<p{i}:x/>" for i in range(n))), 4_900)
+    yield of("a prefix", lambda n: act("<sbm:animation name='Beat'/>" * n), 1_600)
+    yield of("an id used often", lambda n: act("<head id='h' type='NOD'/>" * n), 1_600)
+    yield of(
+        "what is added to one",
+        lambda n: act("<gesture id='g' type='BEAT'/>" + "<gesture id='g' stroke='1'/>" * n),
+        4_800,
+    )
+    yield of("words of a name", lambda n: act(f"<gesture lexeme='{'Beat_' * n}'/>"), 390)
+    yield of(
+        "marks",
+        lambda n: act(
+            "<speech id='s'>" + "".join(f"<tm id='m{i}'/>a " for i in range(n)) + "</speech>"
+        ),
+        490,
+    )
+    yield of(
+        "behaviours at marks that are not there",
+        lambda n: act("<speech id='s'>a</speech>" + "<head type='NOD' start='s:m' end='s:n'/>" * n),
+        1_600,
+    )
+    yield of(
+        "times that are given up",
+        lambda n: act("".join(f"<head type='NOD' start='{i}' end='{i}.1'/>" for i in range(n))),
+        1_600,
+    )
+    yield of(
+        "expressivity",
+        lambda n: act(
+            "<head><description>" + "<SPC.value>1</SPC.value>" * n + "</description></head>"
+        ),
+        4_900,
+    )
+
+
 def _schedule(pool: str, activate: str) -> str:
     return f"<blendingschedule><actionpool>{pool}</actionpool>{activate}</blendingschedule>"
 
@@ -394,4 +444,11 @@ def schedules() -> Iterator[Growing]:
 
 def everything() -> list[Growing]:
     """Return all kinds of growing documents."""
-    return [*bml_texts(), *bml_elements(), *bml_constraints(), *fml(), *schedules()]
+    return [
+        *bml_texts(),
+        *bml_elements(),
+        *bml_constraints(),
+        *fml(),
+        *dialects(),
+        *schedules(),
+    ]

@@ -23,9 +23,11 @@ import numpy as np
 from rich.console import Console
 
 from cubeling.characters import Character, CharacterError, xml_elements
-from cubeling.characters.behaviour import behaviours_of
+from cubeling.characters.behaviour import behaviours_of, parse_dialect, shown_by
 from cubeling.characters.behaviour.bml import (
+    Block,
     BmlWarning,
+    Feedback,
     Realizer,
     feedback_xml,
     parser,
@@ -77,7 +79,15 @@ class Cost:
     """Why it was refused; "" if it was performed."""
 
 
-def perform(document: str) -> str:
+def perform_dialect(document: str) -> str:
+    """Perform a block in a dialect for a second; return why it was refused, or ""."""
+    try:
+        return perform(shown_by(parse_dialect(document)))
+    except CharacterError as error:
+        return str(error)
+
+
+def perform(document: str | Block) -> str:
     """Perform a block for a second of virtual time; return why it was refused, or ""."""
     performing = Realizer(Estimates())
     performing.accept(document)
@@ -85,10 +95,16 @@ def perform(document: str) -> str:
     for frame in range(26):
         for each in performing.update(frame / 25.0):
             feedback_xml(each)
-            if isinstance(each, BmlWarning) and not refusal and ":" not in each.id:
-                refusal = each.description
+            refusal = refusal or _refusal_in(each)
         performing.active(frame / 25.0)
     return refusal
+
+
+def _refusal_in(feedback: Feedback) -> str:
+    """Return why a whole block was refused, if feedback says so, or ""."""
+    if not isinstance(feedback, BmlWarning) or feedback.type == "READ_AS_DIALECT":
+        return ""
+    return "" if ":" in feedback.id else feedback.description
 
 
 def mean(document: str) -> str:
@@ -208,6 +224,7 @@ def main() -> int:
     readers: dict[str, Callable[[str], str]] = {
         "bml": perform,
         "fml": mean,
+        "dialect of bml": perform_dialect,
         "schedule": ScheduleTrial(),
     }
     console, faults = Console(width=150, highlight=False, markup=False, emoji=False), list[str]()

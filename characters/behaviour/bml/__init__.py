@@ -3,6 +3,7 @@
 from cubeling.characters.behaviour.bml.document import (
     BML,
     BMLA,
+    CUBELING,
     FACE_SYNCS,
     GESTURE_SYNCS,
     HOLD_SYNCS,
@@ -38,6 +39,7 @@ from cubeling.characters.behaviour.bml.timing import (
 __all__ = [
     "BML",
     "BMLA",
+    "CUBELING",
     "FACE_SYNCS",
     "GESTURE_SYNCS",
     "HOLD_SYNCS",

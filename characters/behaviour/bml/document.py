@@ -14,6 +14,9 @@ BML = "http://www.bml-initiative.org/bml/bml-1.0"
 BMLA = "http://www.asap-project.org/bmla"
 """Namespace of interrupt, activate, preplan, chunkAfter and parametervaluechange."""
 
+CUBELING = "urn:cubeling:behaviour"
+"""Namespace of `tempo`, `clip`, and attributes named as the fields of `GestureExpressivity`."""
+
 GESTURE_SYNCS = ("start", "ready", "strokeStart", "stroke", "strokeEnd", "relax", "end")
 """Sync points of gesture, pointing and head."""
 
@@ -151,6 +154,12 @@ class Behaviour:
     required: bool = False
     """Whether the block fails if it cannot be performed."""
 
+    line: int = 0
+    """Line of the document that it begins in; 0 if there is none."""
+
+    yielding: bool = False
+    """Whether one of several times of it is given up that cannot be met, instead of all of it."""
+
     def get(self, name: str, default: str = "", namespace: str = "") -> str:
         """Return an attribute, or the default.
 
@@ -167,7 +176,7 @@ class Block:
     """A `bml` element: behaviours and constraints that are scheduled together."""
 
     id: str
-    """Its name, unique among blocks that are not over."""
+    """Its name, unique among blocks that are not over; "" to let the realizer name it."""
 
     behaviours: tuple[Behaviour, ...] = ()
 
@@ -194,6 +203,9 @@ class Block:
 
     character: str = ""
     """Whose block it is; "" for anybody's."""
+
+    notes: tuple[str, ...] = ()
+    """What was changed to read it, if it is in a dialect of BML; one line each."""
 
     attributes: Mapping[str, str] = field(default_factory=dict)
     """All other attributes; those of a namespace are named "{namespace}name"."""

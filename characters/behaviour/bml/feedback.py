@@ -13,8 +13,9 @@ WarningType = Literal[
     "BEHAVIOR_TYPE_NOT_SUPPORTED",
     "CUSTOM_BEHAVIOR_NOT_SUPPORTED",
     "CANNOT_CREATE_BEHAVIOR",
+    "READ_AS_DIALECT",
 ]
-"""Kinds of warnings that the standard has."""
+"""Kinds of warnings: those of the standard, and one for what was changed to read a document."""
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,8 @@ SECONDS = re.compile(rf"\s*[+-]?{_NUMBER}\s*")
 
 _REFERENCE = re.compile(rf"\s*(?:([^\s:]+):)?([^\s:]+):([^\s:]+?)\s*(?:([+-])\s*({_NUMBER})\s*)?")
 _SPACE = re.compile(r"\s+")
-_COMPOSITION = re.compile(r"(MERGE|REPLACE|APPEND)|APPEND-AFTER\(([^()]*)\)", re.IGNORECASE)
+COMPOSITION = re.compile(r"(MERGE|REPLACE|APPEND)|APPEND-AFTER\(([^()]*)\)", re.IGNORECASE)
+"""What the standard and AsapRealizer let a block do with those before it."""
 
 
 def parse(document: str | bytes) -> Block:
@@ -72,6 +73,20 @@ def parse_as(document: str | bytes, roots: Collection[str]) -> Block:
     root = read_xml(document, LIMITS, _place)
     if root.tag not in roots or not _standard(root):
         raise _error(root, f"<{root.tag}> is no <{'> or <'.join(roots)}> of namespace {BML}")
+    block = block_of_elements(root, roots)
+    if not block.id:
+        raise _error(root, "a block without an id; write <bml id=…>")
+    return block
+
+
+def block_of_elements(root: XmlElement, roots: Collection[str]) -> Block:
+    """Return what an element says that is written as `bml` is; its id may be missing.
+
+    Raises
+    ------
+    CharacterError
+        If it is no block that can be understood.
+    """
     return _DocumentReader(root, roots).block()
 
 
@@ -117,8 +132,6 @@ class _DocumentReader:
     def block(self) -> Block:
         given = dict(self._root.attributes)
         name = _id(self._root, given.pop("id", ""))
-        if not name:
-            raise _error(self._root, "a block without an id; write <bml id=…>")
         self._read(self._root.children, required=False)
         composition, after = self._composition(given.pop("composition", "MERGE"))
         return Block(
@@ -170,6 +183,7 @@ class _DocumentReader:
             text=text,
             marks=marks,
             required=required,
+            line=element.line,
         )
 
     def _new_id(self, tag: str) -> str:
@@ -212,7 +226,7 @@ class _DocumentReader:
         return names
 
     def _composition(self, text: str) -> tuple[Composition, tuple[str, ...]]:
-        found = _COMPOSITION.fullmatch(text.strip())
+        found = COMPOSITION.fullmatch(text.strip())
         if found is None:
             known = "MERGE, APPEND, REPLACE, APPEND-AFTER(ids)"
             raise _error(self._root, f'composition "{text[:MAX_ID_CHARS]}" is none of {known}')

@@ -9,6 +9,7 @@ chunks are those of AsapRealizer (van Welbergen et al. 2014, sections 4 and 5).
 import math
 from collections.abc import Iterable
 from contextlib import suppress
+from dataclasses import replace
 
 from cubeling.characters.behaviour.bml.document import BMLA, Behaviour, Block, SyncReference
 from cubeling.characters.behaviour.bml.feedback import (
@@ -54,6 +55,7 @@ class Realizer:
         self._realizations: dict[str, Realization] = {}
         self._feedback: list[Feedback] = []
         self._now = 0.0
+        self._unnamed = 0
 
     def accept(self, bml: str | bytes | Block) -> None:
         """Accept a block, a document or what was read of one; it counts from the next update on."""
@@ -153,6 +155,10 @@ class Realizer:
             except CharacterError as error:
                 self._feedback.append(BmlWarning("", "PARSING_FAILURE", str(error), self._now))
                 return
+        if not bml.id:
+            bml = replace(bml, id=self._new_name())
+        for note in bml.notes:
+            self._warn(bml, "", "READ_AS_DIALECT", note)
         if bml.id in self._realizations:
             self._warn(bml, "", "PARSING_FAILURE", "a block with this id is not over yet")
             return
@@ -165,6 +171,12 @@ class Realizer:
             self._activate(realization, self._now)
         if not realization.awaits_nothing:
             self._preview(realization)
+
+    def _new_name(self) -> str:
+        self._unnamed += 1
+        while f"block{self._unnamed}" in self._realizations:
+            self._unnamed += 1
+        return f"block{self._unnamed}"
 
     def _has_room_for(self, realization: Realization) -> bool:
         known = self._realizations.values()
@@ -214,8 +226,11 @@ class Realizer:
         realization.tracks, realization.constraints = schedule.tracks, schedule.constraints
         realization.reorder()
         self._reorder()  # behaviours of other blocks may lead over to its own
+        lines = {each.id: each.line for each in block.behaviours if each.yielding}
         for failure in schedule.failures:
-            self._warn(block, failure.id, failure.type, failure.reason)
+            line = lines.get(failure.id, 0)
+            reason = f"line {line}: {failure.reason}" if line else failure.reason
+            self._warn(block, failure.id, failure.type, reason)
         return True
 
     # Time

@@ -3,7 +3,7 @@
 import math
 from collections import defaultdict, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from cubeling.characters.behaviour.bml.constraints import (
     Contradictory,
@@ -31,6 +31,9 @@ from cubeling.characters.behaviour.bml.timing import CannotRealize, Timing, Timi
 
 MAX_ATTEMPTS = 25
 """Times that a block is planned, each without what could not be met the time before."""
+
+YIELDING_ATTEMPTS = 3
+"""So many times more if behaviours give up their times one after the other."""
 
 CONTROLS = {
     "interrupt": Timing(("start", "end"), (0.0,), (0.0,), (0.0,)),
@@ -148,7 +151,8 @@ class Scheduler:
         BlockFailed
             If something that is required cannot be performed, or too much contradicts itself.
         """
-        for _ in range(MAX_ATTEMPTS):
+        yielding = any(each.yielding for each in self._block.behaviours)
+        for _ in range(MAX_ATTEMPTS * (YIELDING_ATTEMPTS if yielding else 1)):
             try:
                 tracks = self._attempt(start)
             except Contradictory as error:
@@ -197,6 +201,8 @@ class Scheduler:
                 continue
             if part.required:
                 raise BlockFailed(failure)
+            if isinstance(part, Behaviour) and self._give_up_a_time(part, failure):
+                continue
             self._failures.append(failure)
             self._constraints.pop(failure.id, None)
             self._timings.pop(failure.id, None)
@@ -206,6 +212,24 @@ class Scheduler:
                     del self._constraints[name], self._parts[name]
                 else:
                     waiting.append(_impossible(name, not_performed(reference)))
+
+    def _give_up_a_time(self, behaviour: Behaviour, failure: Failure) -> bool:
+        """Let a behaviour that yields give up its last time; return whether it has done so.
+
+        What is tied to another behaviour by one time only is nothing without it.
+        """
+        timing = self._timings.get(behaviour.id)
+        if not behaviour.yielding or not behaviour.syncs or timing is None:
+            return False
+        last = max(behaviour.syncs, key=lambda sync: timing.index.get(sync, math.inf))
+        alone = len(behaviour.syncs) == 1 and bool(behaviour.syncs[last].behaviour)
+        if alone or failure.type != "IMPOSSIBLE_TO_SCHEDULE":
+            return False
+        syncs = {sync: at for sync, at in behaviour.syncs.items() if sync != last}
+        kept = replace(behaviour, syncs=syncs)
+        self._behaviours[behaviour.id] = self._parts[behaviour.id] = kept
+        self._failures.append(replace(failure, reason=f"its {last} is given up: {failure.reason}"))
+        return True
 
 
 def _tied(block: Block) -> Mapping[str, list[tuple[str, SyncReference]]]:
@@ -288,7 +312,9 @@ def _conflicts(
 def _timing(behaviour: Behaviour, block: Block, estimator: TimingEstimator) -> Timing:
     if behaviour.namespace == BMLA and behaviour.kind in CONTROLS:
         return CONTROLS[behaviour.kind]
-    return estimator.timing(behaviour, block)
+    timing = estimator.timing(behaviour, block)
+    # A dialect's looks may overlap: the last one counts.
+    return replace(timing, occupies=frozenset()) if behaviour.yielding else timing
 
 
 def _failure_type(behaviour: Behaviour, error: CannotRealize) -> WarningType:

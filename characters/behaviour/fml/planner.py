@@ -17,8 +17,9 @@ What is not an intention, speech above all, is BML and stays as it is. An elemen
 from dataclasses import replace
 from functools import cache
 
+from cubeling.characters.behaviour.bml import parser
 from cubeling.characters.behaviour.bml.document import BML, SYNCS, Behaviour, Block, SyncReference
-from cubeling.characters.behaviour.bml.parser import MAX_BEHAVIOURS, parse_as
+from cubeling.characters.behaviour.fml.dialects import by_gesticon, in_lexicon
 from cubeling.characters.behaviour.fml.lexicon import Lexicon, Shown
 from cubeling.characters.errors import CharacterError
 
@@ -43,8 +44,20 @@ def behaviours_of(fml: str | bytes, lexicon: Lexicon | None = None) -> Block:
     CharacterError
         If the document cannot be read, or a number in it is none.
     """
+    return shown_by(parser.parse_as(fml, ROOTS), lexicon)
+
+
+def shown_by(block: Block, lexicon: Lexicon | None = None) -> Block:
+    """Return a block with behaviours instead of the intentions that the lexicon has.
+
+    In a block that was read as a dialect, a type that the lexicon lacks is looked for by its words.
+
+    Raises
+    ------
+    CharacterError
+        If an intention has a strength that is none.
+    """
     lexicon = lexicon or _bundled_lexicon()
-    block = parse_as(fml, ROOTS)
     speech = next((b for b in block.behaviours if b.kind == "speech"), None)
     behaviours = list[Behaviour]()
     for behaviour in block.behaviours:
@@ -52,10 +65,16 @@ def behaviours_of(fml: str | bytes, lexicon: Lexicon | None = None) -> Block:
             behaviours.append(behaviour)
         elif (behaviour.kind, behaviour.get("type")) in lexicon:
             behaviours += _behaviours_of(behaviour, lexicon, speech)
+        elif behaviour.yielding and (known := in_lexicon(behaviour, lexicon)) is not None:
+            behaviours += _behaviours_of(known, lexicon, speech)
+        elif behaviour.yielding and (named := by_gesticon(behaviour)) is not None:
+            behaviours.append(named)
         else:
             behaviours.append(replace(behaviour, namespace=FML, syncs={}))
-    if len(behaviours) > MAX_BEHAVIOURS:
-        raise CharacterError(f"FML: more than {MAX_BEHAVIOURS} behaviours; send several documents")
+    if len(behaviours) > parser.MAX_BEHAVIOURS:
+        raise CharacterError(
+            f"FML: more than {parser.MAX_BEHAVIOURS} behaviours; send several documents"
+        )
     return replace(block, behaviours=tuple(behaviours))
 
 
@@ -88,6 +107,8 @@ def _behaviours_of(
                 for key, value in each.attributes.items()
             },
             required=intention.required,
+            line=intention.line,
+            yielding=intention.yielding,
         )
         for number, each in enumerate(shown, 1)
     ]
@@ -115,6 +136,8 @@ def _strength(intention: Behaviour) -> float:
         strength = float(text)
     except ValueError:
         strength = -1.0
+    if intention.yielding:
+        return min(max(strength, 0.0), 1.0) if strength == strength else 1.0
     if not 0.0 <= strength <= 1.0:
         raise CharacterError(f'FML: {intention.id} is "{text}" strong; give 0 to 1')
     return strength

@@ -5,11 +5,17 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from cubeling.characters.behaviour.bml import Behaviour, CannotRealize, Scheduled
+from cubeling.characters.behaviour.bml import (
+    CUBELING as CUBELING,
+    Behaviour,
+    CannotRealize,
+    Scheduled,
+)
 from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.intents import (
     BehaviourIntent,
+    ClipIntent,
     FaceIntent,
     GazeIntent,
     GestureIntent,
@@ -27,9 +33,6 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.anatomy import SIDES
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.speech.speech import Utterance
-
-CUBELING = "urn:cubeling:behaviour"
-"""Namespace of attributes named after the fields of `GestureExpressivity`."""
 
 Manner = Literal["walk", "run"]
 """How a character goes somewhere."""
@@ -80,6 +83,7 @@ class RealizedFrame:
     faces: list[FaceIntent] = field(default_factory=list)
     gazes: list[GazeIntent] = field(default_factory=list)
     postures: list[PostureIntent] = field(default_factory=list)
+    clips: list[ClipIntent] = field(default_factory=list)
 
     going: Going | None = None
     """Where it goes; None to stay."""
@@ -100,6 +104,7 @@ class RealizedFrame:
             tuple(self.faces),
             tuple(self.gazes),
             tuple(self.postures),
+            tuple(self.clips),
         )
 
 
@@ -185,6 +190,12 @@ def number(behaviour: Behaviour, name: str, default: float, low: float, high: fl
     if len(found) != 1:
         raise CannotRealize(f'{name}="{text}" is no number')
     return min(max(found[0], low), high)
+
+
+def tempo_of(behaviour: Behaviour) -> float:
+    """Return how fast a behaviour is: 2 for its `tempo` of 1, half for −1 (Greta's TMP)."""
+    found = numbers_of(behaviour.get("tempo", namespace=CUBELING))
+    return 2.0 ** min(max(found[0], -1.0), 1.0) if len(found) == 1 else 1.0
 
 
 def times_of(scheduled: Scheduled, ready: str = "ready") -> Times:

@@ -21,6 +21,7 @@ from cubeling.characters.behaviour.realization.frame import (
     number,
     shift_times_of,
     stroke_times_of,
+    tempo_of,
     times_of,
 )
 from cubeling.characters.behaviour.realization.head_movements import HALF_AMOUNT, HEAD_MOVEMENTS
@@ -58,11 +59,13 @@ class HeadKind:
         who.require_head()
         lexeme = _movement(behaviour)
         if HEAD_MOVEMENTS[lexeme].held:
-            return elastic(GESTURE_SYNCS, TURN_SPANS_S, holds=frozenset({"ready", "strokeEnd"}))
+            turn = tuple(span / tempo_of(behaviour) for span in TURN_SPANS_S)
+            return elastic(GESTURE_SYNCS, turn, holds=frozenset({"ready", "strokeEnd"}))
         swings = _repeats(behaviour)
         first = SWING_S / (4 if HEAD_MOVEMENTS[lexeme].to_and_fro else 2)
         spans = (HEAD_SPANS_S[0], 0.0, first, SWING_S * swings - first, 0.0, HEAD_SPANS_S[-1])
-        natural = elastic(GESTURE_SYNCS, spans)
+        tempo = tempo_of(behaviour)
+        natural = elastic(GESTURE_SYNCS, tuple(span / tempo for span in spans))
         # A head that has more time goes on to nod; it does not wait.
         return replace(natural, longest=(*natural.longest[:3], math.inf, *natural.longest[4:]))
 

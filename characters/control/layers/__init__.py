@@ -17,6 +17,7 @@ LIVELINESS = Registry[LayerFactory](
         "sitting_up": f"{_LAYERS}.sitting_up:SittingUpLayer",
         "stance": f"{_LAYERS}.behaviour:StanceLayer",
         "gestures": f"{_LAYERS}.gestures:GestureLayer",
+        "clips": f"{_LAYERS}.clips:ClipLayer",
         "posture": f"{_LAYERS}.posture:PostureLayer",
         "reach": f"{_LAYERS}.reach:ReachLayer",
         "gaze": f"{_LAYERS}.gaze:GazeLayer",

@@ -1,4 +1,4 @@
-"""The body of who speaks: gestures that beat the rhythm, those that a text asks for, and nods."""
+"""The body of who speaks: gestures that beat the rhythm, and nods."""
 
 import zlib
 from collections.abc import Sequence
@@ -9,25 +9,20 @@ import numpy as np
 from cubeling.characters.body.head_joints import HeadJoints
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.control.layers.layer import FrameContext
-from cubeling.characters.face.expressions import EXPRESSIONS
+from cubeling.characters.control.tagged_gestures import spans_with_hands
 from cubeling.characters.model.character import Character
-from cubeling.characters.motion.curves import Curve, FadeCurve, Keyed, ease
+from cubeling.characters.motion.curves import Curve, Keyed, ease
 from cubeling.characters.motion.layers import lay_over
-from cubeling.characters.motion.modifiers import Stretch
 from cubeling.characters.motion.motion import Motion
 from cubeling.characters.skeleton.pose import Array, Pose
 from cubeling.characters.smoothing import low_pass
-from cubeling.characters.speech.speech import Accent, GestureSpan
-from cubeling.characters.synthesis.gestures.library import gesture_joints
+from cubeling.characters.speech.speech import Accent
 
 CUT_S = 0.3
 """How long hands take to leave a speech that is cut off [s]."""
 
 JOIN_S = 0.15
 """How long hands take to join in a speech that has begun before [s]."""
-
-FADE = FadeCurve(0.25, 0.3)
-"""How a gesture that a text asks for comes and goes."""
 
 HANDS_FREE = {"idle": 1.0, "walk": 0.8, "run": 0.3}
 """Share of gestures that is shown while a character does something; none in its actions."""
@@ -74,27 +69,17 @@ class SpeechGestures:
         self._joined = now
         self._cut: float | None = None
         self._overlays: list[OverlaidMotion] = []
-        self._morphs = len(character.morphs)
-        self._expressions = expressions_of(character, said.gestures)
         self.head = HeadBeats(said.accents, seed)
         """The beats of its head."""
-        asked = clips_of(character, said.gestures)
         if character.gestures is not None:
-            free = [
-                a for a in said.accents if not any(s.start <= a.time <= s.end for s, _ in asked)
-            ]
+            asked = spans_with_hands(character, said.gestures)
+            free = [a for a in said.accents if not any(s.start <= a.time <= s.end for s in asked)]
             profile = speech.profile
             planner = profile.planner(character.gestures)
             plan = planner.plan(free, said.duration, profile.gesture_emphasis, seed)
             beats = plan.motion()
             self._overlays.append(
                 OverlaidMotion(beats, speech.start, beats.weights, character.gestures.joints)
-            )
-        joints = gesture_joints(character.skeleton, character.anatomy)
-        for span, clip in asked:
-            stretched = Stretch(clip, span.end - span.start)
-            self._overlays.append(
-                OverlaidMotion(stretched, speech.start + span.start, FADE, joints)
             )
         ends = [
             speech.start + said.duration,
@@ -119,17 +104,7 @@ class SpeechGestures:
         share = self.share(now)
         for overlay in self._overlays:
             pose = overlay.over(pose, now, hands * share)
-        if self._expressions:
-            pose = replace(pose, morphs=self._express(pose.morphs, now, share))
         return pose
-
-    def _express(self, morphs: Array | None, now: float, share: float) -> Array:
-        shown = np.zeros(self._morphs) if morphs is None else morphs.copy()
-        for span, number in self._expressions:
-            own, length = now - self.speech.start - span.start, span.end - span.start
-            if 0.0 < own < length:
-                shown[number] = max(shown[number], share * FADE.at(own, length))
-        return shown
 
 
 class SpeechLayer:
@@ -175,27 +150,6 @@ class SpeechLayer:
         elif speech is None and self._spoken:
             self._spoken[-1].cut(now)
         self._spoken = [each for each in self._spoken if now < each.end or each.speech is speech]
-
-
-def clips_of(
-    character: Character, spans: Sequence[GestureSpan]
-) -> list[tuple[GestureSpan, Motion]]:
-    """Return the clips that a text asks for, with their spans."""
-    return [(span, character.clips[span.name]) for span in spans if span.name in character.clips]
-
-
-def expressions_of(
-    character: Character, spans: Sequence[GestureSpan]
-) -> list[tuple[GestureSpan, int]]:
-    """Return the numbers of the expressions that a text asks for, with their spans."""
-    morphs = character.morphs
-    return [(s, morphs.index(s.name)) for s in spans if s.name in morphs]
-
-
-def known_gestures(character: Character) -> tuple[str, ...]:
-    """Return the names that a text may ask a character for."""
-    expressions = [name for name in EXPRESSIONS if name in character.morphs]
-    return (*character.clips, *expressions)
 
 
 WEAK_RAD, STRONG_RAD = np.deg2rad(1.5), np.deg2rad(6.5)

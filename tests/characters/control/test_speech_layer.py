@@ -8,7 +8,7 @@ import pytest
 
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from cubeling.characters.control.command import SpeechIntent
-from cubeling.characters.control.layers import DEFAULT_LAYERS, SpeechLayer
+from cubeling.characters.control.layers import LIVELINESS
 from cubeling.characters.control.speech_profile import SpeechProfile
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.speech.speech import Accent, GestureSpan, Phone, Utterance
@@ -130,7 +130,7 @@ def test_a_text_asks_for_a_clip_and_it_plays_in_its_span(human, silent):
 
 def test_an_expression_that_a_text_asks_for_shows_in_its_span(human):
     said = replace(SAID, accents=(), gestures=(GestureSpan("surprised", 1.0, 2.5),))
-    layers = [layer for layer in DEFAULT_LAYERS if layer is SpeechLayer]
+    layers = [LIVELINESS["face_shift"]]
     poses = played(human, always(SpeechIntent(said, 0.5)), 4.0, layers=layers)
     number = human.morphs.index("surprised")
     shown = [0.0 if pose.morphs is None else pose.morphs[number] for pose in poses]

@@ -1,0 +1,129 @@
+"""Gestures of a tagged text: the behaviours of BML, at the times of its words."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import fields, replace
+from functools import cached_property
+
+from cubeling.characters.behaviour.bml.document import Behaviour, Block, SyncReference
+from cubeling.characters.behaviour.bml.schedule import Scheduler
+from cubeling.characters.behaviour.bml.timing import CannotRealize, Scheduled
+from cubeling.characters.behaviour.gesticon import Gesticon
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.intents import BehaviourIntent
+from cubeling.characters.behaviour.realization.character_realizer import CharacterRealizer
+from cubeling.characters.behaviour.realization.frame import RealizationContext
+from cubeling.characters.behaviour.realization.hand_kinds import meaning_of
+from cubeling.characters.behaviour.realization.surroundings import NamedPlaces
+from cubeling.characters.control.command import CharacterCommand, SpeechIntent
+from cubeling.characters.face.expressions import EXPRESSIONS
+from cubeling.characters.model.character import Character
+from cubeling.characters.speech.speech import GestureSpan
+
+HANDS = ("gesture", "clip", "posture")
+"""What leaves no hands for the rhythm of a speech."""
+
+
+class TaggedGestures:
+    """Adds what tagged texts ask for to the commands of a character."""
+
+    def __init__(self, character: Character) -> None:
+        self._character = character
+        self._speech: SpeechIntent | None = None
+        self._scheduled: tuple[Scheduled, ...] = ()
+
+    @cached_property
+    def _realizer(self) -> CharacterRealizer:
+        # Most sessions have no tagged text: the gestures are read with the first one.
+        return CharacterRealizer(_context(self._character))
+
+    def add(self, command: CharacterCommand) -> CharacterCommand:
+        """Return a command that asks for the gestures of its speech too."""
+        self._follow(command.speech, command.timestamp)
+        now = command.timestamp
+        active = [each for each in self._scheduled if each.start <= now < each.end]
+        if not active:
+            return command
+        own, asked = self._realizer.frame_of(active, now).intent, command.behaviour
+        return replace(command, behaviour=own if asked is None else _joined(asked, own))
+
+    def _follow(self, speech: SpeechIntent | None, now: float) -> None:
+        """Schedule a new speech, and forget one that is cut off."""
+        if speech is not None:
+            if self._speech is None or speech.start != self._speech.start:
+                self._scheduled = self._schedule(speech)
+            self._speech = speech
+        elif self._speech is not None:
+            if now < self._speech.end:
+                self._scheduled = ()
+            self._speech = None
+
+    def _schedule(self, speech: SpeechIntent) -> tuple[Scheduled, ...]:
+        spans = speech.utterance.gestures
+        if not spans:
+            return ()
+        block = Block(f"text@{speech.start:g}", tuple(map(_behaviour, range(len(spans)), spans)))
+        scheduler = Scheduler(block, self._realizer, lambda _: None)
+        return tuple(
+            Scheduled(
+                block.id,
+                track.behaviour,
+                dict(zip(track.timing.syncs, track.times, strict=True)),
+                {},
+            )
+            for track in scheduler.schedule(speech.start, ()).tracks.values()
+        )
+
+
+def known_gestures(character: Character) -> tuple[str, ...]:
+    """Return the names that a text may ask a character for, without their other spellings."""
+    names = (*GestureCollection.load_bundled().names, *Gesticon.bundled().names, *character.clips)
+    return tuple(meanings_of(character, dict.fromkeys((*names, *EXPRESSIONS))))
+
+
+def meanings_of(character: Character, names: Iterable[str]) -> dict[str, str]:
+    """Return what names lead to that a text may ask a character for: gesture, head, face, clip.
+
+    Those that it cannot perform are left out.
+    """
+    who = _context(character)
+    known = dict[str, str]()
+    for name in names:
+        behaviour = _behaviour(0, GestureSpan(name, 0.0, 1.0))
+        try:
+            CharacterRealizer(who).timing(behaviour, Block(""))
+            known[name] = meaning_of(behaviour, who).kind
+        except CannotRealize:
+            continue
+    return known
+
+
+def _context(character: Character) -> RealizationContext:
+    return RealizationContext(character, GestureCollection.load_bundled(), NamedPlaces())
+
+
+def spans_with_hands(character: Character, spans: Sequence[GestureSpan]) -> tuple[GestureSpan, ...]:
+    """Return the gestures of a text that leave no hands for its rhythm."""
+    if not spans:
+        return ()
+    known = meanings_of(character, [span.name for span in spans])
+    return tuple(span for span in spans if known.get(span.name) in HANDS)
+
+
+def _behaviour(number: int, span: GestureSpan) -> Behaviour:
+    """Return the behaviour of BML for a gesture of a text."""
+    return Behaviour(
+        f"{span.name}{number}",
+        "gesture",
+        syncs={
+            "start": SyncReference(offset=span.start),
+            "end": SyncReference(offset=span.end),
+        },
+        attributes={"lexeme": span.name},
+        yielding=True,
+    )
+
+
+def _joined(one: BehaviourIntent, other: BehaviourIntent) -> BehaviourIntent:
+    return BehaviourIntent(
+        *(getattr(one, each.name) + getattr(other, each.name) for each in fields(one))
+    )
