@@ -104,9 +104,17 @@ def test_another_document_is_refused(document):
 @pytest.mark.parametrize("damaged", [[[1.0], [2.0, 3.0]], {"a": 1}, ["one"]])
 @pytest.mark.parametrize("name", ["velocity", "timestamp"])
 def test_what_should_be_numbers_is_refused_in_plain_words(name, damaged):
-    numbers = {"velocity": [0.0] * 6, "covariance": [], "timestamp": 1.5} | {name: damaged}
-    fields = {"visible": False, "camera_from_cube": None, "source": "image", "faces": []}
-    document = json.dumps(fields | numbers | {"reprojection_error": None}).encode()
+    fields: dict[str, object] = {
+        "visible": False,
+        "camera_from_cube": None,
+        "velocity": [0.0] * 6,
+        "covariance": [],
+        "source": "image",
+        "faces": [],
+        "reprojection_error": None,
+        "timestamp": 1.5,
+    }
+    document = json.dumps({**fields, name: damaged}).encode()
     with pytest.raises(ValueError, match="is no number or array"):
         decode(CubeState, document)
 
