@@ -11,7 +11,7 @@ from cubeling.app.commands.ik_figures import PRINTED, measure_alone, measure_sur
 from cubeling.characters.ik.solvers.solving import SOLVERS
 
 
-@pytest.mark.slow(reason="it measures solvers")
+@pytest.mark.full  # it measures solvers
 def test_bench_prints_table_7_1_beside_what_we_measure(monkeypatch: pytest.MonkeyPatch) -> None:
     some = {name: SOLVERS[name] for name in ("springs", "damped")}
     monkeypatch.setattr("cubeling.characters.motion.SOLVERS", some)
