@@ -62,6 +62,7 @@ LEAST_DEVIATION = 0.006
 """Smallest standard deviation that is stated, as a share: all pictures show the same folded
 cube."""
 
+
 @dataclass(frozen=True, eq=False)
 class _Views:
     """The pictures that are counted, as arrays with room for all faces in each of V pictures."""

@@ -70,7 +70,7 @@ class FocalLength:
     @property
     def known(self) -> bool:
         """Whether play would not tell it better."""
-        return self.deviation < KNOWN_FOCAL_DEVIATION
+        return self.deviation <= KNOWN_FOCAL_DEVIATION
 
     def is_better(self, other: "FocalLength") -> bool:
         """Whether this is worth taking instead of another one.

@@ -34,11 +34,7 @@ class MeasuredLens:
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
         self._told = intrinsics
         self._in_use = FocalLength(1.0, intrinsics.focal_deviation or 0.0)
-        self._estimator: FocalLengthEstimator | None = None
-        if not self._in_use.known:
-            from cubeling.tracking.refinement.focal_length import FocalLengthEstimator
-
-            self._estimator = FocalLengthEstimator(cube, intrinsics)
+        self._estimator = None if self._in_use.known else _estimator_of(cube, intrinsics)
 
     @property
     def learns(self) -> bool:
@@ -84,6 +80,12 @@ class MeasuredLens:
 
     def _through(self, focal: FocalLength) -> Intrinsics:
         return self._told.lengthen(focal.scale, focal.deviation)
+
+
+def _estimator_of(cube: CubeModel, intrinsics: Intrinsics) -> "FocalLengthEstimator":
+    from cubeling.tracking.refinement.focal_length import FocalLengthEstimator
+
+    return FocalLengthEstimator(cube, intrinsics)
 
 
 def track_through(track: Track, cube: CubeModel, before: Intrinsics, after: Intrinsics) -> Track:

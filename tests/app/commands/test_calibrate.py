@@ -12,7 +12,6 @@ from cubeling.tracking import CubeModel, Frame, Intrinsics
 from cubeling.tracking.calibration import CubeFinder, ViewCoverage
 from cubeling.tracking.synthetic import open_synthetic
 
-
 WAVE = "wave?size=640x360&blur=0&clutter=0&fold=0.8&seed=2"
 
 

@@ -1,10 +1,10 @@
 """`cubeling robot`: a file for each of its commands."""
 
 from cubeling.app.command_group import CommandGroup, former_spellings
-from cubeling.app.commands.robot.conform import conform
-from cubeling.app.commands.robot.ports import list_
-from cubeling.app.commands.robot.simulate import simulate
-from cubeling.app.commands.robot.trial import try_
+from cubeling.app.commands.robots.robot.conform import conform
+from cubeling.app.commands.robots.robot.ports import list_
+from cubeling.app.commands.robots.robot.simulate import simulate
+from cubeling.app.commands.robots.robot.trial import try_
 
 app = CommandGroup("Simulate, try out and test robots, and list the serial ports.")
 

@@ -33,7 +33,7 @@ def bench(
 
     Example: cubeling ik bench
     """
-    from cubeling.app.commands.ik_figures import (
+    from cubeling.app.commands.study.ik_figures import (
         CHAIN_SIZES,
         alone_table,
         measure_alone,

@@ -13,9 +13,16 @@ from cubeling.app.commands.access import (
     check_publisher,
     publisher,
 )
-from cubeling.app.commands.character_options import CHARACTER_GROUP, OwnMotionsOption
+from cubeling.app.commands.character_options import (
+    CHARACTER_GROUP,
+    OwnMotionsOption,
+    ProfileOption,
+    SettingsOption,
+    VoiceOption,
+    profile_of,
+)
 from cubeling.app.commands.output import OverwriteOption
-from cubeling.app.commands.session.play_options import (
+from cubeling.app.commands.play.play_options import (
     ALL_REALISM,
     DEFAULT_CAMERA,
     INSIDE_HELP,
@@ -44,13 +51,7 @@ from cubeling.app.commands.session.play_options import (
     SourceOption,
     codecs_of,
 )
-from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
-from cubeling.app.commands.speech_options import (
-    ProfileOption,
-    SettingsOption,
-    VoiceOption,
-    profile_of,
-)
+from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import (
     inside_of,
@@ -172,7 +173,7 @@ def play(
     options, kept = preferences.open(options)
     check_inputs(options)
     # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
-    from cubeling.app.commands.session.progress import play_session
+    from cubeling.app.commands.play.progress import play_session
     from cubeling.app.scenarios.roles import check_cubes
 
     check_cubes(scenario, options.cubes)  # before a display is missing

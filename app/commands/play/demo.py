@@ -11,15 +11,15 @@ import typer
 from rich.console import Console
 
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
-from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
-from cubeling.app.commands.session.play_options import (
+from cubeling.app.commands.play.part import EndOption, LoopOption, StartOption
+from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
     FolderOption,
     OutputOption,
     PersonalityOption,
     ScenarioArgument,
 )
-from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
+from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
 from cubeling.app.scenarios import check_scenario, scenario_cube
 from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
@@ -100,7 +100,7 @@ def demo(
             )
             options = replace(part, source=DEFAULT_CAMERA)
         options, kept = preferences.open(options)
-        from cubeling.app.commands.session.progress import play_session
+        from cubeling.app.commands.play.progress import play_session
 
         ending = end_card(scenario)
         play_session(options, scenario, source=camera, ending=ending, preferences=kept)
@@ -112,7 +112,7 @@ def render(options: SessionOptions, console: Console) -> None:
 
     assert options.output is not None
     check_output_paths(options)
-    from cubeling.app.commands.session.progress import play_session
+    from cubeling.app.commands.play.progress import play_session
     from cubeling.app.session import session_info
 
     console.print(

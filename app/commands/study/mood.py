@@ -15,7 +15,7 @@ from cubeling.app.commands.output import (
     chosen_output,
     needs_matplotlib,
 )
-from cubeling.app.commands.session.complete import complete_session
+from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_input

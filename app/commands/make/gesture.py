@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cubeling.app.command_group import CommandGroup, former_spellings
-from cubeling.app.commands.gesture_library import learn, library
+from cubeling.app.commands.make.gesture_library import learn, library
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character

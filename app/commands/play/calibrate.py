@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cubeling.app.commands.session.play_options import DEFAULT_CAMERA, CubeOption
+from cubeling.app.commands.play.play_options import DEFAULT_CAMERA, CubeOption
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_input

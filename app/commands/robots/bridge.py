@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.live import Live
 
 from cubeling.app.commands.access import BROKER_GROUP, Broker, Ca, PasswordFile, Site
-from cubeling.app.commands.session.complete import complete_session
+from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.ui.literal_text import literal_text
 from cubeling.robot.network import ANY_NAME, DEFAULT_SITE, HOLD_S, MAX_AGE_S

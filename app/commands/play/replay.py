@@ -19,9 +19,9 @@ from cubeling.app.commands.access import (
 )
 from cubeling.app.commands.character_options import CHARACTER_GROUP, OwnMotionsOption
 from cubeling.app.commands.output import OverwriteOption
-from cubeling.app.commands.session.complete import complete_session
-from cubeling.app.commands.session.part import EndOption, LoopOption, StartOption
-from cubeling.app.commands.session.play_options import (
+from cubeling.app.commands.play.complete import complete_session
+from cubeling.app.commands.play.part import EndOption, LoopOption, StartOption
+from cubeling.app.commands.play.play_options import (
     ALL_REALISM,
     INSIDE_HELP,
     PICTURE_GROUP,
@@ -41,7 +41,7 @@ from cubeling.app.commands.session.play_options import (
     SoundsOption,
     codecs_of,
 )
-from cubeling.app.commands.session.preference_options import GivenPreferences, with_preferences
+from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import inside_of, realism_of
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
@@ -166,7 +166,7 @@ def replay(
         check_output_paths(asked)
         check_inputs(asked)
         # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
-        from cubeling.app.commands.session.progress import ProgressLines, play_session
+        from cubeling.app.commands.play.progress import ProgressLines, play_session
         from cubeling.app.running.replay_check import check_session
         from cubeling.app.session import SessionFile
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from cubeling.app.commands.session.play_options import DEFAULT_CAMERA
+from cubeling.app.commands.play.play_options import DEFAULT_CAMERA
 from cubeling.app.errors import AppError
 from cubeling.app.interrupts import CTRL_C_EXIT_CODE
 from cubeling.app.output_path import check_output

@@ -19,7 +19,7 @@ from cubeling.app.counted import quantity
 from cubeling.app.ui.literal_text import literal_text
 
 if TYPE_CHECKING:
-    from cubeling.app.commands.robot.trials import Trial
+    from cubeling.app.commands.robots.robot.trials import Trial
     from cubeling.robot import Robot, Telemetry
 
 POLL_INTERVAL_S = 0.05
@@ -64,7 +64,7 @@ def try_(
 
     Example: cubeling robot try sim:pleo --mood happy
     """
-    from cubeling.app.commands.robot.trials import trials_of
+    from cubeling.app.commands.robots.robot.trials import trials_of
     from cubeling.robot import RobotError, connect
 
     console = Console(highlight=False)

@@ -48,7 +48,7 @@ def conform(
 
     Example: cubeling robot conform sim
     """
-    from cubeling.app.commands.robot.conformance_report import (
+    from cubeling.app.commands.robots.robot.conformance_report import (
         SVG_TEMPLATE,
         as_json,
         listing,
@@ -95,7 +95,7 @@ def _check_writable(path: Path) -> None:
 
 def _run_checks(port: str, checks: list[Check], console: Console) -> ConformanceReport:
     """Test the robot at a port, and print each result."""
-    from cubeling.app.commands.robot.conformance_report import show
+    from cubeling.app.commands.robots.robot.conformance_report import show
     from cubeling.robot import RobotError, opener, protocol_of
     from cubeling.robot.conformance import PortChannel, run_checks
 

@@ -8,8 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cubeling.app.commands.character_options import CHARACTER_GROUP
-from cubeling.app.commands.speech_options import SPEECH_GROUP
+from cubeling.app.commands.character_options import CHARACTER_GROUP, SPEECH_GROUP
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import INSIDE_CHOICES, NO_REALISM, REALISM_CHOICES
 from cubeling.app.scenarios import scenario_names, scenario_summary

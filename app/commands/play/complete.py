@@ -32,7 +32,7 @@ def complete_session(
         yield path
         return
     # They load all that plays a session, which most sessions do not need here.
-    from cubeling.app.commands.session.progress import show_progress
+    from cubeling.app.commands.play.progress import show_progress
     from cubeling.app.running.computing import compute_channels
 
     with TemporaryDirectory(prefix="cubeling-") as folder:

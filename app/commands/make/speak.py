@@ -11,16 +11,16 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.affect import Emotion
-from cubeling.app.commands.character_options import OwnMotionsOption
-from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
-from cubeling.app.commands.session.preference_options import emotion_of, size_of
-from cubeling.app.commands.speech_options import (
+from cubeling.app.commands.character_options import (
     SPEECH_GROUP,
+    OwnMotionsOption,
     ProfileOption,
     SettingsOption,
     VoiceOption,
     profile_of,
 )
+from cubeling.app.commands.output import OverwriteOption, VideoCodecOption, chosen_output
+from cubeling.app.commands.play.preference_options import emotion_of, size_of
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character, check_input

@@ -29,7 +29,7 @@ SCHEDULE_FILE = FileKind(
     (".xml",),
     AppError,
     1_000_000,
-    "cubeling.app.commands.schedule:read_schedule",
+    "cubeling.app.commands.make.schedule:read_schedule",
 )
 """A blending schedule; a larger one is not written by hand."""
 
