@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.gathering import PartKeys
-from cubeling.characters.behaviour.gestures.splines import TcbSpline
+from cubeling.characters.behaviour.gestures.style.splines import TcbSpline
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy

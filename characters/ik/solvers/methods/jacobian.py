@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.ik.solvers import columns
-from cubeling.characters.ik.solvers.positional import PositionalSolver
+from cubeling.characters.ik.solvers.methods.positional import PositionalSolver
 from cubeling.characters.ik.solvers.rules import Rule
 from cubeling.characters.ik.solvers.task import Arrays, Bounds, Solved, Task, until_done
 from cubeling.characters.skeleton.pose import Array
