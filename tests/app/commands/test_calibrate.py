@@ -86,6 +86,7 @@ def test_waving_the_cube_writes_camera_cube_and_coverage(shown, waved, tmp_path)
 def test_a_check_says_whether_a_file_is_still_right(shown, waved, tmp_path):
     with open_synthetic(WAVE) as source:
         camera = source.intrinsics
+    assert camera
     camera.save(tmp_path / "camera.yaml")
     half = waved[:28]  # of the stops: enough to compare with a camera
     code, out, _, _ = shown(half, "--check", "camera.yaml")
