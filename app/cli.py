@@ -65,7 +65,7 @@ GROUPS = {
     },
 }
 """The commands in their groups, with the first sentence of their help. A new command is registered
-here."""
+here; its module is in the folder of its group."""
 
 COMMANDS = {name: summary for group in GROUPS.values() for name, summary in group.items()}
 """The commands of all groups."""
@@ -76,14 +76,11 @@ FORMER_SPELLINGS = {"lang": "language", "window-size": "size", "camera": "source
 RENAMED = {"gestures": "cubeling gesture, and its show cubeling gesture library"}
 """What commands of old versions are called now."""
 
-SESSION_COMMANDS = ("demo", "play", "replay", "export")
-"""The commands whose modules are in the folder `session`."""
-
 
 def load_command(name: str) -> Any:
     """Import the module of a command; return its function NAME, or the group that is its `app`."""
-    folder = "session." if name in SESSION_COMMANDS else ""
-    module = import_module(f"cubeling.app.commands.{folder}{name}")
+    (folder,) = (group.lower() for group, summaries in GROUPS.items() if name in summaries)
+    module = import_module(f"cubeling.app.commands.{folder}.{name}")
     group = getattr(module, "app", None)
     if group is None:
         group = CommandGroup()

@@ -4,7 +4,7 @@ A preference changes nothing that is recorded: what does (the scenario, its sett
 eyes look, the robot) is an option of each session, see `cubeling.app.session.SessionOptions`.
 
 To add one, write a field of `Preferences` and a line of `FLAGS` in
-`app.commands.session.preference_options`. Who uses it reads `PreferenceStore.now`, and calls
+`app.commands.play.preference_options`. Who uses it reads `PreferenceStore.now`, and calls
 `change` when the player changes it; it is kept at the end.
 """
 

@@ -17,7 +17,7 @@ from rich.console import Console
 from cubeling.app.behaving.opening import open_lines
 from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
 from cubeling.app.behaving.recording import record_behaviour
-from cubeling.app.commands.mood import plot
+from cubeling.app.commands.study.mood import plot
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.preferences import PreferenceStore

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 from rich.console import Console
 
-from cubeling.app.commands.session.progress import run_with_progress
+from cubeling.app.commands.play.progress import run_with_progress
 from cubeling.app.running.opening import open_session
 from cubeling.app.session import SessionOptions
 from cubeling.app.session.bundled import RECORDED_SCENARIOS

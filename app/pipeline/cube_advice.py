@@ -2,10 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from cubeling.app.pipeline.other_cube import OtherCube, advice
 from cubeling.app.pipeline.print_watch import PrintWatch, fault_advice
-from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics, PrintFault
+from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics
+
+if TYPE_CHECKING:
+    from cubeling.tracking import PrintFault
 
 FOLD_IT, FOLD_IT_SHOWN_S = "This is the sheet: fold it into a cube.", 1.0
 """What the player is told who shows the sheet, and for how long after it was seen [s]."""

@@ -31,6 +31,7 @@ from cubeling.app.pipeline.scenario_errors import (
     described_error,
     scenario_errors,
 )
+from cubeling.app.pipeline.sight import Sight
 from cubeling.app.pipeline.situation import Situation, table_from_cube
 from cubeling.app.pipeline.spoken_line import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
@@ -57,7 +58,7 @@ from cubeling.tracking import (
     LensEstimate,
     TrackingError,
 )
-from cubeling.tracking.appearance import APPEARANCE_PARTS, Appearance, AppearanceMeter
+from cubeling.tracking.appearance import APPEARANCE_PARTS
 
 if TYPE_CHECKING:
     import moderngl
@@ -146,17 +147,16 @@ class Playground:
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
-        self.intrinsics = intrinsics
-        """Of the camera, as they are at the beginning of the scenario."""
-        self._lens = intrinsics
         self.known_cubes = tuple(known_cubes)
         self._look, self._lap = look, lap
         self._controller, self._inside = controller, inside
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         parts = tuple(each for each in APPEARANCE_PARTS if each in realism)
-        self._measured = parts if measured or context is not None else ()
         self._renderer = StepRenderer(context, intrinsics, realism)
+        seen = parts if measured or context is not None else ()
+        self.sight = Sight(self._renderer, intrinsics, seen)
+        """The lens, and what is measured of the pictures."""
         self.play(scenario, cube, character)
 
     def play(
@@ -176,7 +176,7 @@ class Playground:
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
         self._tracker_error = ""
-        self._begin_to_see(cube)
+        self.sight.begin(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
         self._body: PosedBody | None = None
@@ -212,12 +212,16 @@ class Playground:
 
     def look_through(self, intrinsics: Intrinsics) -> None:
         """Take another camera; `play` must follow, as the table is another one in its picture."""
-        self._renderer.look_through(intrinsics)
-        self.intrinsics = self._lens = intrinsics
+        self.sight.take(intrinsics)
 
     def keep_lens(self) -> None:
         """Begin with the lens as play has measured it; `play` must follow."""
         self.look_through(self.measured_intrinsics)
+
+    @property
+    def intrinsics(self) -> Intrinsics:
+        """Of the camera, as they are at the beginning of the scenario."""
+        return self.sight.intrinsics
 
     @property
     def draws_in_software(self) -> bool:
@@ -245,25 +249,8 @@ class Playground:
         """
         for name, value in checkpoint.content().items():
             setattr(self, name, value)
-        self._see_through(self._tracker.intrinsics)
-        self._begin_to_see(self.cube)
-
-    def _see_through(self, lens: Intrinsics) -> None:
-        """Draw and measure through a lens that poses were found through."""
-        self._lens = lens
-        self._renderer.look_through(lens)
-
-    def _follow_lens(self, state: CubeState) -> None:
-        """Look through the lens of a state: its focal length may be measured in play."""
-        focal = state.focal_scale * self.intrinsics.matrix[0, 0]
-        if focal != self._lens.matrix[0, 0]:
-            self._see_through(self.intrinsics.lengthen(state.focal_scale, None))
-            self._appearance = AppearanceMeter(self.cube, self._lens, self._measured)
-
-    def _begin_to_see(self, cube: CubeModel) -> None:
-        """Forget what the pictures have shown so far beside the cube's pose."""
-        self._renderer.play(cube)
-        self._appearance = AppearanceMeter(cube, self._lens, self._measured)
+        self.sight.look_through(self._tracker.intrinsics)
+        self.sight.begin(self.cube)
 
     def adjust(self, settings: ScenarioSettings, look: str) -> None:
         """Play on with other settings, as far as the scenario can be adjusted."""
@@ -304,13 +291,13 @@ class Playground:
             self.expect(frame)
         self._tracker_error = ""
         state = replay.state or self.track(frame)
-        self._follow_lens(state)
+        self.sight.follow(state, self.cube)
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
         appearance = replay.appearance
         if appearance is None and drawn:
-            appearance = self.see(frame, state, controls)
+            appearance = self.sight.see(frame, state, controls)
         self._lap("appearance")
         inputs = inputs or Inputs()
         decision = self.decide(state, controls, inputs)
@@ -325,7 +312,7 @@ class Playground:
         interior = self._window.update(state, controls, command, inputs.inside)
         outcome = replace(decision, command=command, hint=self._hint(decision))
         self._lap("animation")
-        matrix = self._lens.matrix
+        matrix = self.sight.lens.matrix
         step = Step(
             frame,
             state,
@@ -393,11 +380,6 @@ class Playground:
         """Compute what the hand does with the cube."""
         return self._gestures.update(state)
 
-    def see(self, frame: Frame, state: CubeState, controls: CubeControls) -> Appearance | None:
-        """Measure what the picture tells beside the cube's pose; None where nothing needs it."""
-        table = controls.camera_from_table
-        return self._appearance.update(frame, state, table) if self._measured else None
-
     def decide(self, state: CubeState, controls: CubeControls, inputs: Inputs) -> Outcome:
         """Let the scenario decide."""
         animator = self._animator
@@ -444,7 +426,7 @@ class Playground:
 
     def with_picture(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
-        appearance = step.appearance or self.see(step.frame, step.state, step.controls)
+        appearance = step.appearance or self.sight.see(step.frame, step.state, step.controls)
         step = replace(step, appearance=appearance)
         return replace(step, picture=self.draw(step))
 

@@ -21,28 +21,28 @@ from cubeling.characters.behaviour.gestures.collection import (
     GestureCollection as GestureCollection,
     gestures_in as gestures_in,
 )
-from cubeling.characters.behaviour.gestures.contacts import CONTACTS as CONTACTS
-from cubeling.characters.behaviour.gestures.directions import (
-    DIRECTIONS as DIRECTIONS,
-    across as across,
-)
 from cubeling.characters.behaviour.gestures.files import (
     GESTURE_SUFFIX as GESTURE_SUFFIX,
     load_gesture as load_gesture,
     save_gesture as save_gesture,
 )
 from cubeling.characters.behaviour.gestures.motion import GestureMotion as GestureMotion
-from cubeling.characters.behaviour.gestures.planning import GestureRealizer as GestureRealizer
-from cubeling.characters.behaviour.gestures.recording import (
-    gesture_from_recording as gesture_from_recording,
+from cubeling.characters.behaviour.gestures.place.contacts import CONTACTS as CONTACTS
+from cubeling.characters.behaviour.gestures.place.directions import (
+    DIRECTIONS as DIRECTIONS,
+    across as across,
 )
-from cubeling.characters.behaviour.gestures.space import (
+from cubeling.characters.behaviour.gestures.place.space import (
     CENTRES_X_CM as CENTRES_X_CM,
     CENTRES_Y_CM as CENTRES_Y_CM,
     CENTRES_Z_CM as CENTRES_Z_CM,
     CHEST_CM as CHEST_CM,
     REFERENCE_ARM_M as REFERENCE_ARM_M,
     GestureSpace as GestureSpace,
+)
+from cubeling.characters.behaviour.gestures.planning import GestureRealizer as GestureRealizer
+from cubeling.characters.behaviour.gestures.recording import (
+    gesture_from_recording as gesture_from_recording,
 )
 from cubeling.characters.behaviour.gestures.timing import (
     Repeats as Repeats,

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from cubeling.app import cli
-from cubeling.app.commands.session import progress
+from cubeling.app.commands.play import progress
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import intrinsics_for

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 import cubeling.app.scenarios as _scenarios  # registers them
-from cubeling.app.commands.session.complete import complete_session
+from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.session import messages

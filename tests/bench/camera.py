@@ -16,7 +16,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.commands.doctor import camera_report, read_for
+from cubeling.app.commands.look.doctor import camera_report, read_for
 from cubeling.tracking import Frame, TrackingError, open_source
 from cubeling.tracking.sources.live import LiveSource
 

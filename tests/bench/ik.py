@@ -25,7 +25,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.commands.ik_figures import (
+from cubeling.app.commands.study.ik_figures import (
     CHAIN_SIZES,
     AloneFigures,
     SureFigures,

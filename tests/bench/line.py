@@ -96,7 +96,7 @@ def measure(
             marks.append(time.perf_counter())
             posed = playground.animate(outcome.command)
             marks.append(time.perf_counter())
-            appearance = playground.see(frame, state, controls)
+            appearance = playground.sight.see(frame, state, controls)
             step = Step(frame, state, controls, outcome, posed, None, appearance=appearance)
             picture = playground.draw(step)
             assert picture is not None

@@ -22,7 +22,6 @@ from dataclasses import dataclass
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from scipy.stats import binom
 
 from tests.campaigns.fault_mixes import FAULT_MIXES, FaultMix
 from tests.campaigns.monitor import BIN_WIDTH_S
@@ -101,6 +100,8 @@ def quantile(histogram: list[int], share: float) -> float:
 
 def failures(outcomes: list[Outcome], seen: list[Outcome]) -> list[str]:
     """Return the failures of single runs, then of the sums."""
+    from scipy.stats import binom  # a second of each process that collects the tests
+
     wrong = [
         f"{one.mix!r}: {one.violation}\n  again: python -m tests.campaigns.wire "
         f"--only {one.mix!r} --run-seed {one.seed}"

@@ -8,7 +8,7 @@ import sys
 
 from rich.console import Console
 
-from cubeling.app.commands.session.complete import complete_session
+from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from tests.golden import FOLDER, describe, differences, renewed
 

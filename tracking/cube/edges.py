@@ -1,6 +1,8 @@
 """The black and white edges of a cube's markers, as points in space."""
 
+import itertools
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -68,20 +70,31 @@ class EdgeModel:
         # Within a face, a line is identified by the direction of its white side and its distance.
         places = np.einsum("ij,ij->i", points, across)
         keys = np.column_stack([numbers, np.round(np.column_stack([across, places]), 9)])
-        line = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
+        order = np.lexsort(keys.T[::-1])  # by face first; it keeps the order within a line
+        begins = np.any(np.diff(keys[order], axis=0) != 0, axis=1)
+        line = np.empty(len(order), np.intp)
+        line[order] = np.concatenate([[0], np.cumsum(begins)])
         edges = EdgeModel(points, along, across, to_end, outline, numbers, line)
-        return edges._of(np.argsort(line, kind="stable"))
+        return edges._of(order)
 
 
 def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, Array, Array, Array, Flags]:
-    cells = marker_cells(cube.dictionary, face.marker_id)
-    count = len(cells)
-    flat = edge_points(cells, POINTS_PER_CELL)
+    flat, count = _marker_edges(cube.dictionary, face.marker_id)
     top_left, top_right, _, bottom_left = face.corners
     axes = np.stack([top_right - top_left, bottom_left - top_left]) / count
     points = top_left + flat[:, 0:2] @ axes
     outline = np.asarray(np.isclose(flat[:, :2] % count, 0).any(axis=1))
     return points, flat[:, 2:4] @ axes, flat[:, 4:6] @ axes, flat[:, 6], outline
+
+
+@lru_cache(maxsize=64)
+def _marker_edges(dictionary: str, marker_id: int) -> tuple[Array, int]:
+    """Return the points on the edges of a marker, and how many cells it has along a side.
+
+    They are kept, as the print is measured by cubes whose markers have several sizes.
+    """
+    cells = marker_cells(dictionary, marker_id)
+    return edge_points(cells, POINTS_PER_CELL), len(cells)
 
 
 def edge_points(cells: Flags, per_cell: int) -> Array:
@@ -99,18 +112,22 @@ def edge_points(cells: Flags, per_cell: int) -> Array:
 
 
 def _vertical_edges(white: Flags, per_cell: int) -> Array:
-    rows: list[tuple[float, ...]] = []
-    edge = 0
+    parts: list[Array] = []
     for column in range(1, white.shape[1]):
         # +1 where white is on the right, −1 where on the left, 0 where there is no edge.
         polarity = white[:, column].astype(int) - white[:, column - 1]
-        breaks = np.flatnonzero(np.diff(polarity)) + 1
-        for run in np.split(np.arange(len(white)), breaks):
-            side = polarity[run[0]]
-            if side == 0:
+        bounds = [0, *(np.flatnonzero(np.diff(polarity)) + 1), len(white)]
+        for first, end in itertools.pairwise(bounds):
+            if polarity[first] == 0:
                 continue
-            for place in (np.arange(len(run) * per_cell) + 0.5) / per_cell:
-                end = min(place, len(run) - place)
-                rows.append((column - 1, run[0] - 1 + place, 0, 1, side, 0, end, edge))
-            edge += 1
-    return np.array(rows, np.float64)
+            length = int(end - first)
+            places = (np.arange(length * per_cell) + 0.5) / per_cell
+            points = np.zeros((len(places), 8))
+            points[:, 0] = column - 1
+            points[:, 1] = first - 1 + places
+            points[:, 3] = 1
+            points[:, 4] = polarity[first]
+            points[:, 6] = np.minimum(places, length - places)
+            points[:, 7] = len(parts)
+            parts.append(points)
+    return np.concatenate(parts)

@@ -21,7 +21,7 @@ from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import MIN_DEPTH
 from cubeling.tracking.geometry.robust_statistics import quantile
 from cubeling.tracking.refinement.face_corners import FaceCorners
-from cubeling.tracking.refinement.lens_estimate import FOLD_SPREAD
+from cubeling.tracking.refinement.lens_estimate import FOLD_SPREAD, FocalLength
 
 K1_SPREAD, BLOOM_PX = 0.15, 0.5
 """Standard deviations before anything is measured: of the radial distortion, and of how far white
@@ -58,35 +58,9 @@ marker's side, whichever is more: those of a flat sheet do not."""
 MAX_SCALE = 3.0
 """No camera's focal length differs by such a factor from a guess."""
 
-KNOWN_DEVIATION, LEAST_DEVIATION = 0.007, 0.006
-"""Standard deviation, as a share, from which on a focal length is known, and the smallest that is
-stated: all pictures show the same folded cube."""
-
-MIN_GAIN = 0.8
-"""Another focal length is worth taking once its standard deviation has shrunk to this share of that
-of the one in use, or where that is wrong by more than half of one."""
-
-
-@dataclass(frozen=True)
-class FocalLength:
-    """The focal length of a camera, as far as it is known."""
-
-    scale: float
-    """Multiple of the focal lengths of the intrinsics at the beginning."""
-
-    deviation: float
-    """Standard deviation, as a share of it."""
-
-    def is_better(self, other: "FocalLength") -> bool:
-        """Whether this is worth taking instead of another one.
-
-        >>> FocalLength(1.01, 0.03).is_better(FocalLength(1.0, 0.035))
-        False
-        >>> FocalLength(1.01, 0.02).is_better(FocalLength(1.0, 0.035))
-        True
-        """
-        wrong = abs(np.log(self.scale / other.scale)) > self.deviation / 2
-        return bool(wrong or self.deviation < MIN_GAIN * other.deviation)
+LEAST_DEVIATION = 0.006
+"""Smallest standard deviation that is stated, as a share: all pictures show the same folded
+cube."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +160,7 @@ class FocalLengthEstimator:
     @property
     def done(self) -> bool:
         """Whether nothing more is learned."""
-        return self.estimate.deviation < KNOWN_DEVIATION or len(self._views.poses) >= MAX_VIEWS
+        return self.estimate.known or len(self._views.poses) >= MAX_VIEWS
 
     def learn(self, faces: Sequence[FaceCorners]) -> None:
         """Learn from the faces of one picture, each at most once, if they show anything new."""

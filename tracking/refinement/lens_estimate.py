@@ -49,6 +49,41 @@ KNOWN_DEVIATION, MAX_K1, MAX_DEVIATIONS = 0.03, 0.05, 3.0
 and in standard deviations."""
 
 
+KNOWN_FOCAL_DEVIATION = 0.007
+"""Standard deviation, as a share, from which on a focal length is known."""
+
+MIN_GAIN = 0.8
+"""Another focal length is worth taking once its standard deviation has shrunk to this share of that
+of the one in use, or where that is wrong by more than half of one."""
+
+
+@dataclass(frozen=True)
+class FocalLength:
+    """The focal length of a camera, as far as it is known."""
+
+    scale: float
+    """Multiple of the focal lengths of the intrinsics at the beginning."""
+
+    deviation: float
+    """Standard deviation, as a share of it."""
+
+    @property
+    def known(self) -> bool:
+        """Whether play would not tell it better."""
+        return self.deviation <= KNOWN_FOCAL_DEVIATION
+
+    def is_better(self, other: "FocalLength") -> bool:
+        """Whether this is worth taking instead of another one.
+
+        >>> FocalLength(1.01, 0.03).is_better(FocalLength(1.0, 0.035))
+        False
+        >>> FocalLength(1.01, 0.02).is_better(FocalLength(1.0, 0.035))
+        True
+        """
+        wrong = abs(np.log(self.scale / other.scale)) > self.deviation / 2
+        return bool(wrong or self.deviation < MIN_GAIN * other.deviation)
+
+
 @dataclass(frozen=True)
 class LensEstimate:
     """What was measured of a lens beyond what its intrinsics claim."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -10,14 +11,13 @@ from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array
 from cubeling.tracking.geometry.intrinsics import Intrinsics
-from cubeling.tracking.refinement.face_corners import FaceCorners
-from cubeling.tracking.refinement.focal_length import (
-    KNOWN_DEVIATION,
-    FocalLength,
-    FocalLengthEstimator,
-)
+from cubeling.tracking.refinement.lens_estimate import FocalLength
 from cubeling.tracking.refinement.systematic_error import CORNER_ERROR_PX
 from cubeling.tracking.tracker.prediction import Track, TrackedPose
+
+if TYPE_CHECKING:  # a camera that was calibrated needs none of these
+    from cubeling.tracking.refinement.face_corners import FaceCorners
+    from cubeling.tracking.refinement.focal_length import FocalLengthEstimator
 
 MAX_EDGE_DEVIATION = 0.12
 """Through a lens whose focal length is off by more than this, as a share, the edges of one face are
@@ -33,10 +33,8 @@ class MeasuredLens:
 
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
         self._told = intrinsics
-        stated = intrinsics.focal_deviation
-        measured = stated is not None and stated > KNOWN_DEVIATION
-        self._estimator = FocalLengthEstimator(cube, intrinsics) if measured else None
-        self._in_use = FocalLength(1.0, stated or 0.0)
+        self._in_use = FocalLength(1.0, intrinsics.focal_deviation or 0.0)
+        self._estimator = None if self._in_use.known else _estimator_of(cube, intrinsics)
 
     @property
     def learns(self) -> bool:
@@ -68,7 +66,7 @@ class MeasuredLens:
         """The lens as well as it is known."""
         return self._through(self._estimator.estimate) if self._estimator else self._told
 
-    def learn(self, faces: Sequence[FaceCorners]) -> None:
+    def learn(self, faces: "Sequence[FaceCorners]") -> None:
         """Learn from the faces of the cube in one picture."""
         if self._estimator is not None:
             self._estimator.learn(faces)
@@ -82,6 +80,12 @@ class MeasuredLens:
 
     def _through(self, focal: FocalLength) -> Intrinsics:
         return self._told.lengthen(focal.scale, focal.deviation)
+
+
+def _estimator_of(cube: CubeModel, intrinsics: Intrinsics) -> "FocalLengthEstimator":
+    from cubeling.tracking.refinement.focal_length import FocalLengthEstimator
+
+    return FocalLengthEstimator(cube, intrinsics)
 
 
 def track_through(track: Track, cube: CubeModel, before: Intrinsics, after: Intrinsics) -> Track:

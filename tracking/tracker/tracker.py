@@ -15,7 +15,6 @@ from cubeling.tracking.refinement.blur_search import BlurSearch
 from cubeling.tracking.refinement.camera_model import CameraModelEstimator
 from cubeling.tracking.refinement.cell_search import CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
-from cubeling.tracking.refinement.face_corners import detected_faces, fitted_faces
 from cubeling.tracking.refinement.lens_estimate import LensEstimate, LensEstimator
 from cubeling.tracking.refinement.systematic_error import SystematicError
 from cubeling.tracking.single_thread import on_one_thread
@@ -166,6 +165,9 @@ class CubeTracker:
         if found.edges is not None:
             self._lens.learn(pose, found.edges)
             if self._measured.wants(pose):
+                # A camera that was calibrated needs neither: loaded where the lens is measured.
+                from cubeling.tracking.refinement.face_corners import fitted_faces
+
                 lens = self._projection
                 self._measured.learn(fitted_faces(self.cube, lens, pose, found.faces, found.edges))
         velocity, acceleration = track.motion(pose, noise, now)
@@ -196,6 +198,8 @@ class CubeTracker:
         Whether or not a pose is trusted: a wrong lens is a reason why none is.
         """
         if self._measured.learns:
+            from cubeling.tracking.refinement.face_corners import detected_faces
+
             seen = markers.read(self.cube.dictionary, "first window")
             self._measured.learn(detected_faces(markers_of(self.cube, seen)))
 

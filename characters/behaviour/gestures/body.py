@@ -7,9 +7,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.behaviour.gestures.contacts import ContactPoints
-from cubeling.characters.behaviour.gestures.space import GestureSpace
-from cubeling.characters.behaviour.gestures.trunk import TrunkTurns, chest_part
+from cubeling.characters.behaviour.gestures.place.contacts import ContactPoints
+from cubeling.characters.behaviour.gestures.place.space import GestureSpace
+from cubeling.characters.behaviour.gestures.style.trunk import TrunkTurns, chest_part
 from cubeling.characters.ik.reaching import UpperBody
 from cubeling.characters.ik.sitting_up import SittingUp
 from cubeling.characters.model.character import Character

@@ -7,8 +7,8 @@ from dataclasses import fields
 from itertools import pairwise
 
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
-from cubeling.characters.behaviour.gestures.contacts import CONTACTS
-from cubeling.characters.behaviour.gestures.directions import DIRECTIONS, across
+from cubeling.characters.behaviour.gestures.place.contacts import CONTACTS
+from cubeling.characters.behaviour.gestures.place.directions import DIRECTIONS, across
 from cubeling.characters.behaviour.symbolic_gesture import (
     SECTORS_X,
     SECTORS_Y,

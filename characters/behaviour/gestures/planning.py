@@ -14,11 +14,12 @@ import numpy as np
 
 from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from cubeling.characters.behaviour.gestures.body import SIDES, GestureBody
-from cubeling.characters.behaviour.gestures.contacts import OTHER_HAND
 from cubeling.characters.behaviour.gestures.gathering import KeyFrame, gather
 from cubeling.characters.behaviour.gestures.motion import GestureMotion
+from cubeling.characters.behaviour.gestures.place.contacts import OTHER_HAND
+from cubeling.characters.behaviour.gestures.place.space import GestureSpace
 from cubeling.characters.behaviour.gestures.postures import KeyPostures
-from cubeling.characters.behaviour.gestures.space import GestureSpace
+from cubeling.characters.behaviour.gestures.style.trunk import body_track
 from cubeling.characters.behaviour.gestures.timing import Repeats, stroke_length
 from cubeling.characters.behaviour.gestures.tracks import (
     POSITION,
@@ -27,7 +28,6 @@ from cubeling.characters.behaviour.gestures.tracks import (
     hand_track,
     one_period,
 )
-from cubeling.characters.behaviour.gestures.trunk import body_track
 from cubeling.characters.behaviour.intents import Hand
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
 from cubeling.characters.errors import CharacterWarning

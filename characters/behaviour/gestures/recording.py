@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.behaviour.gestures.body import SIDES, arm_length
-from cubeling.characters.behaviour.gestures.directions import words_of
-from cubeling.characters.behaviour.gestures.space import GestureSpace
-from cubeling.characters.behaviour.gestures.trunk import chest_part
+from cubeling.characters.behaviour.gestures.place.directions import words_of
+from cubeling.characters.behaviour.gestures.place.space import GestureSpace
+from cubeling.characters.behaviour.gestures.style.trunk import chest_part
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, Place, SymbolicGesture
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.reaching import HAND_SHAPES, UpperBody

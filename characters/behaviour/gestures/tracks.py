@@ -8,11 +8,11 @@ from typing import TypeVar
 import numpy as np
 
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
-from cubeling.characters.behaviour.gestures.directions import direction
-from cubeling.characters.behaviour.gestures.easing import ease_time
 from cubeling.characters.behaviour.gestures.gathering import PartKeys
-from cubeling.characters.behaviour.gestures.space import GestureSpace
-from cubeling.characters.behaviour.gestures.splines import TcbSpline
+from cubeling.characters.behaviour.gestures.place.directions import direction
+from cubeling.characters.behaviour.gestures.place.space import GestureSpace
+from cubeling.characters.behaviour.gestures.style.easing import ease_time
+from cubeling.characters.behaviour.gestures.style.splines import TcbSpline
 from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramp, samples
 from cubeling.characters.behaviour.gestures.timing import Repeats
 from cubeling.characters.behaviour.intents import Hand

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 from cubeling.characters.behaviour.expressivity import NEUTRAL
-from cubeling.characters.behaviour.gestures.easing import ease_time
 from cubeling.characters.behaviour.gestures.planning import GestureRealizer
+from cubeling.characters.behaviour.gestures.style.easing import ease_time
 from cubeling.characters.behaviour.gestures.timing import (
     GONE,
     PREPARED,

@@ -7,15 +7,15 @@ from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.solvers import columns
-from cubeling.characters.ik.solvers.ccd import CyclicCoordinateDescent
 from cubeling.characters.ik.solvers.chains import Chains, Solution
-from cubeling.characters.ik.solvers.curling import curl
-from cubeling.characters.ik.solvers.fabrik import Fabrik
-from cubeling.characters.ik.solvers.jacobian import JacobianSolver
+from cubeling.characters.ik.solvers.methods.ccd import CyclicCoordinateDescent
+from cubeling.characters.ik.solvers.methods.curling import curl
+from cubeling.characters.ik.solvers.methods.fabrik import Fabrik
+from cubeling.characters.ik.solvers.methods.jacobian import JacobianSolver
+from cubeling.characters.ik.solvers.methods.positional import PositionalSolver
+from cubeling.characters.ik.solvers.methods.springs import MassSprings
 from cubeling.characters.ik.solvers.orientation import orient, straight
-from cubeling.characters.ik.solvers.positional import PositionalSolver
 from cubeling.characters.ik.solvers.rules import Damped, pseudo_inverse, transpose
-from cubeling.characters.ik.solvers.springs import MassSprings
 from cubeling.characters.ik.solvers.task import Limiting, Solver, Task
 from cubeling.characters.skeleton.pose import Array
 

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.solvers.methods.springs import verlet
 from cubeling.characters.ik.solvers.orientation import horn
-from cubeling.characters.ik.solvers.springs import verlet
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array
 

@@ -80,19 +80,6 @@ class JointAngles:
         return total
 
 
-def transition_probabilities(distances: Array, sigma: float) -> Array:
-    """Return the probability of each transition i → j, rows sum to one (Lee et al. 2002, S26).
-
-    P_ij ∝ exp(−D_(i, j−1) / σ), T 2.21. `distances` is D, (frames, frames), of one clip.
-    """
-    shifted = np.full_like(distances, np.inf)
-    shifted[:, 1:] = distances[:, :-1]
-    nearest = shifted.min(axis=1, keepdims=True)
-    likeness: Array = np.exp(-(shifted - nearest) / sigma)
-    likeness /= likeness.sum(axis=1, keepdims=True)
-    return likeness
-
-
 def _orient(library: MotionLibrary, joints: list[int]) -> Array:
     """Return the local rotations of joints, (frames, joints, 4), the hips' in the world's axes.
 

@@ -7,7 +7,7 @@ import av
 import numpy as np
 import pytest
 
-from cubeling.app.commands.behave import behave
+from cubeling.app.commands.make.behave import behave
 from cubeling.app.errors import AppError
 from cubeling.app.speaking import voices
 from cubeling.characters import CharacterError, load_motion

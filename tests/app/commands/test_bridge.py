@@ -15,7 +15,7 @@ from rich.console import Console
 
 from cubeling import recordings
 from cubeling.affect import Emotion
-from cubeling.app.commands.bridge import EventPrinter
+from cubeling.app.commands.robots.bridge import EventPrinter
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.running.bridge import Bridge, RecordedPlayer

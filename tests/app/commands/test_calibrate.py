@@ -12,6 +12,8 @@ from cubeling.tracking import CubeModel, Frame, Intrinsics
 from cubeling.tracking.calibration import CubeFinder, ViewCoverage
 from cubeling.tracking.synthetic import open_synthetic
 
+WAVE = "wave?size=640x360&blur=0&clutter=0&fold=0.8&seed=2"
+
 
 class Kept:
     """A source of pictures that were drawn once."""
@@ -44,7 +46,7 @@ class Kept:
 @pytest.fixture(scope="module")
 def waved():
     """A cube that is waved, at its stops: 27 times two pictures."""
-    source = open_synthetic("wave?size=640x360&blur=0&clutter=0&fold=0.8&seed=2")
+    source = open_synthetic(WAVE)
     times = [0.74 * stop + wait for stop in range(27) for wait in (0.02, 0.08)]
     return [Frame(source.frame(round(time * 30)).image, time, n) for n, time in enumerate(times)]
 
@@ -61,7 +63,7 @@ def shown(monkeypatch, cubeling):
     return run
 
 
-@pytest.mark.slow(reason="a camera is calibrated and checked twice")
+@pytest.mark.slow(reason="a camera is calibrated")
 def test_waving_the_cube_writes_camera_cube_and_coverage(shown, waved, tmp_path):
     code, out, err, _ = shown(
         waved, "-o", "camera.yaml", "--save-cube", "mine.toml", "--coverage", "seen.png"
@@ -78,6 +80,14 @@ def test_waving_the_cube_writes_camera_cube_and_coverage(shown, waved, tmp_path)
     ]
     assert 0.0003 < max(off) < 0.002
     assert (tmp_path / "seen.png").read_bytes()[:4] == b"\x89PNG"
+
+
+@pytest.mark.full  # a camera is calibrated twice more
+def test_a_check_says_whether_a_file_is_still_right(shown, waved, tmp_path):
+    with open_synthetic(WAVE) as source:
+        camera = source.intrinsics
+    assert camera
+    camera.save(tmp_path / "camera.yaml")
     half = waved[:28]  # of the stops: enough to compare with a camera
     code, out, _, _ = shown(half, "--check", "camera.yaml")
     assert code == 0

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from cubeling.app.commands import doctor
+from cubeling.app.commands.look import doctor
 from cubeling.characters import rendering
 from cubeling.robot.link.ports import SerialPort
 

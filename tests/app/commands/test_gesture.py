@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from cubeling.app.commands import gesture
+from cubeling.app.commands.make import gesture
 from cubeling.app.errors import AppError
 from cubeling.app.workshop.gesture_editor.preview import Preview, PreviewedGesture
 from cubeling.characters import Character, Clip, Pose

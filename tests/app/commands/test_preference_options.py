@@ -4,7 +4,7 @@ from dataclasses import fields
 
 import pytest
 
-from cubeling.app.commands.session.preference_options import FLAGS
+from cubeling.app.commands.play.preference_options import FLAGS
 from cubeling.app.preferences import Preferences
 
 

@@ -9,8 +9,8 @@ import av
 import cv2
 import pytest
 
-from cubeling.app.commands.session import progress
-from cubeling.app.commands.session.progress import ProgressLines
+from cubeling.app.commands.play import progress
+from cubeling.app.commands.play.progress import ProgressLines
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, messages, session_info

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from cubeling import robot
-from cubeling.app.commands.robot import trial
+from cubeling.app.commands.robots.robot import trial
 from cubeling.robot.protocol import messages as m
 from cubeling.robot.simulators import SIMULATORS
 from cubeling.robot.simulators.cubeling.dinosaur import CATALOGUE

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from cubeling.app.commands.speech import app
+from cubeling.app.commands.study.speech import app
 from cubeling.app.errors import AppError
 from cubeling.app.workshop.speech_plot import GestureMark, draw, save_plot
 from cubeling.characters import CharacterError

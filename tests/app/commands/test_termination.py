@@ -66,13 +66,11 @@ def test_a_simulated_robot_ends_with_the_code_of_the_signal(number, tmp_path):
     ("arguments", "begun"),
     [
         (("behave", "--serve", "0", "--no-window"), "Blocks of BML come in"),
-        pytest.param(
-            *(("robot", "conform", "sim:cubeling"), "hello answered"), marks=pytest.mark.full
-        ),
+        (("robot", "conform", "sim:cubeling"), "hello answered"),
     ],
     ids=["behave", "conform"],
 )
-@pytest.mark.slow(reason="programs are started")
+@pytest.mark.full  # programs are started; the next test is of a session that plays
 def test_commands_end_with_the_code_of_the_signal(arguments, begun, tmp_path):
     with started(*arguments, folder=tmp_path) as child:
         until(child, begun)

@@ -46,8 +46,8 @@ def install(tmp_path_factory, monkeypatch):
         (info / "entry_points.txt").write_text("\n".join(lines))
         monkeypatch.syspath_prepend(site)
         monkeypatch.delitem(sys.modules, module, raising=False)
-        monkeypatch.delitem(sys.modules, "cubeling.app.commands.session.play", raising=False)
-        monkeypatch.delitem(sys.modules, "cubeling.app.commands.session.demo", raising=False)
+        monkeypatch.delitem(sys.modules, "cubeling.app.commands.play.play", raising=False)
+        monkeypatch.delitem(sys.modules, "cubeling.app.commands.play.demo", raising=False)
         importlib.invalidate_caches()
         added_scenarios.cache_clear()
 
@@ -57,7 +57,7 @@ def install(tmp_path_factory, monkeypatch):
         del sys.modules[module]
     for command in ("play", "play_options", "replay", "demo"):
         # Their help lists what was installed.
-        sys.modules.pop(f"cubeling.app.commands.session.{command}", None)
+        sys.modules.pop(f"cubeling.app.commands.play.{command}", None)
 
 
 def test_the_example_of_the_page_waves_and_cheers(install, hand):

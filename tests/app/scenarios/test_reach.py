@@ -139,7 +139,7 @@ def test_it_steps_out_of_a_cube_that_is_put_down_on_it(play):
     assert np.linalg.norm(play.body.place - [x, 0.0, z]) > 0.04
 
 
-@pytest.mark.slow(reason="eighteen seconds are played")
+@pytest.mark.full  # eighteen seconds are played
 def test_no_title_flashes(play):
     """Whatever is shown stays for a moment, or the player cannot read it."""
     play.on(13.0)

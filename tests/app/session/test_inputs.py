@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import tests.sessions
-from cubeling.app.commands.session.complete import complete_session
+from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.opening import open_session

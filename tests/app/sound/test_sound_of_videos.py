@@ -7,7 +7,7 @@ import av
 import numpy as np
 import pytest
 
-from cubeling.app.commands.session import progress
+from cubeling.app.commands.play import progress
 from cubeling.app.running.opening import open_sound
 from cubeling.app.session import SessionOptions
 from cubeling.app.sound import Cue, Mixer, SessionSound, SoundBank, SoundCues

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from cubeling.app.commands.session import demo
+from cubeling.app.commands.play import demo
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView

@@ -12,7 +12,6 @@ from cubeling.characters.synthesis.distances import (
     PointClouds,
     distance_matrix,
 )
-from cubeling.characters.synthesis.distances.angles import transition_probabilities
 from cubeling.characters.synthesis.distances.points import windows
 from cubeling.characters.synthesis.graphs.parts import part_distance, threshold_shares
 from cubeling.characters.synthesis.joint_weights import fit_weights, nonnegative_weights
@@ -145,10 +144,3 @@ def test_alignment_of_point_clouds_is_the_best_one(library: MotionLibrary) -> No
     assert least == pytest.approx(distance.pairs(np.array([a]), np.array([b]))[0])
     for x, z, yaw in 0.01 * np.vstack([np.eye(3), -np.eye(3)]):
         assert error(RootDelta(best.x + x, best.z + z, best.yaw + yaw)) > least
-
-
-def test_lees_probabilities_prefer_what_looks_like_the_predecessor() -> None:
-    distances = np.array([[0.0, 1.0, 4.0], [1.0, 0.0, 1.0], [4.0, 1.0, 0.0]])
-    chances = transition_probabilities(distances, 1.0)
-    assert np.allclose(chances.sum(1), 1.0)
-    assert chances.argmax(1).tolist() == [1, 2, 2]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import typer
 
-from cubeling.app.commands.robot.conform import conform
+from cubeling.app.commands.robots.robot.conform import conform
 from cubeling.robot import SimulatedPort
 from tests.robot.conformance.mutants.commands import AcknowledgesOnce
 from tests.robot.conformance.mutants.sessions import SaysGoneToEverything

@@ -37,7 +37,7 @@ def photograph(*names):
     return np.asarray(grey, np.uint8)
 
 
-@pytest.mark.slow(reason="a camera is calibrated from 27 drawn pictures")
+@pytest.mark.full  # the test of the command waves a cube too
 def test_waving_a_cube_determines_lens_and_folding_errors():
     source = open_synthetic("wave?fold=0.8&seed=4&clutter=0&noise=3&size=960x540")
     cube = CubeModel.load("locomotion")

@@ -74,6 +74,7 @@ def test_a_wrong_guess_is_corrected_and_never_surer_than_it_is_right(
     assert found.deviation < 0.02
 
 
+@pytest.mark.full  # a spread needs many cubes
 def test_the_stated_deviation_is_the_spread_over_cubes_of_bent_paper() -> None:
     """Many pictures of one cube have its paper in common, which averaging does not remove."""
     errors = []

@@ -119,7 +119,7 @@ def test_the_covariance_is_the_spread_of_poses_of_bent_markers(
     assert along.max() < 1.4
 
 
-@pytest.mark.slow(reason="a spread needs many poses")
+@pytest.mark.full  # a spread needs many poses
 def test_the_covariance_is_the_spread_of_poses_where_k1_is_unknown() -> None:
     pose, random = held(at=(0.1, -0.07, 0.4)), np.random.default_rng(1)
     points = corners_of(THREE)

@@ -40,11 +40,14 @@ def test_a_right_print_has_no_fault() -> None:
 
 @pytest.mark.parametrize(
     "fault",
-    [
-        PrintFault("rolled", ("front",), 270),
-        PrintFault("swapped", ("front", "right")),
-        PrintFault("swapped", ("front", "back")),
-    ],
+    some(
+        [
+            PrintFault("rolled", ("front",), 270),
+            PrintFault("swapped", ("front", "right")),
+            PrintFault("swapped", ("front", "back")),
+        ],
+        2,
+    ),
     ids=lambda fault: f"{fault.kind} {' '.join(fault.faces)}",
 )
 def test_a_marker_in_another_place_is_named(fault: PrintFault) -> None:

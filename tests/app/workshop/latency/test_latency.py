@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from cubeling.app.commands import latency as command
+from cubeling.app.commands.look import latency as command
 from cubeling.app.session import SessionOptions
 from cubeling.app.ui.screen import NullScreen
 from cubeling.app.workshop.latency import program, window

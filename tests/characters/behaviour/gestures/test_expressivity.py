@@ -5,9 +5,14 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
-from cubeling.characters.behaviour.gestures.easing import ease_time, out_back, out_bounce, out_quart
-from cubeling.characters.behaviour.gestures.splines import TcbSpline
-from cubeling.characters.behaviour.gestures.trunk import torso_controller
+from cubeling.characters.behaviour.gestures.style.easing import (
+    ease_time,
+    out_back,
+    out_bounce,
+    out_quart,
+)
+from cubeling.characters.behaviour.gestures.style.splines import TcbSpline
+from cubeling.characters.behaviour.gestures.style.trunk import torso_controller
 
 TIMES = np.array([0.0, 0.2, 0.7, 1.0])
 POINTS = np.array([[0.0, 0.0], [1.0, 0.5], [0.5, 2.0], [-1.0, 0.0]])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.characters.behaviour.gestures.space import REFERENCE_ARM_M, GestureSpace
+from cubeling.characters.behaviour.gestures.place.space import REFERENCE_ARM_M, GestureSpace
 from cubeling.characters.behaviour.symbolic_gesture import SECTORS_X, SECTORS_Y, SECTORS_Z, Place
 from cubeling.characters.skeleton import rotations
 

@@ -7,10 +7,9 @@ import pytest
 
 from cubeling.characters.ik.solvers import columns
 from cubeling.characters.ik.solvers.chains import Chains
-from cubeling.characters.ik.solvers.limiting import propagate
 from cubeling.characters.ik.solvers.measures import arc_targets
-from cubeling.characters.ik.solvers.positional import PositionalSolver
-from cubeling.characters.ik.solvers.springs import MassSprings
+from cubeling.characters.ik.solvers.methods.positional import PositionalSolver, propagate
+from cubeling.characters.ik.solvers.methods.springs import MassSprings
 from cubeling.characters.ik.solvers.task import Limiting, Task
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.joint_limits import AngleLimits

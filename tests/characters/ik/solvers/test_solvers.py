@@ -13,9 +13,9 @@ from cubeling.characters.ik.solvers.measures import (
     violations,
     zig_zag,
 )
+from cubeling.characters.ik.solvers.methods.springs import MassSprings, verlet
 from cubeling.characters.ik.solvers.single import SingleChain
 from cubeling.characters.ik.solvers.solving import SOLVERS, solve
-from cubeling.characters.ik.solvers.springs import MassSprings, verlet
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.joint_limits import AngleLimits
 from cubeling.characters.skeleton.pose import Array

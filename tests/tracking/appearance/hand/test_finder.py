@@ -103,7 +103,7 @@ def test_a_cube_without_a_hand_is_not_covered():
         assert finder.update(frame.image, state_at(made.truth(index))) is None
 
 
-@pytest.mark.slow(reason="the frames of a film are drawn")
+@pytest.mark.full  # films of two hands are drawn in full size
 def test_a_hand_of_another_colour_is_found_after_the_first():
     skins = GLOVES["yellow rubber"], SKINS["Monk 06"]  # the second is as the desk
     views = [HandView(skin, -120, seed=3, defocus=1.2) for skin in skins]

@@ -1,0 +1,1 @@
+"""The commands that look at this computer and at characters."""

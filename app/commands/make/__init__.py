@@ -1,0 +1,1 @@
+"""The commands that make what a character does: speech, behaviour, gestures, motions."""

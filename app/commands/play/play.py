@@ -1,0 +1,183 @@
+"""The command `cubeling play`."""
+
+from typing import Annotated
+
+import typer
+
+from cubeling.app.commands.access import (
+    Broker,
+    Ca,
+    PasswordFile,
+    PlayerName,
+    Site,
+    check_publisher,
+    publisher,
+)
+from cubeling.app.commands.character_options import (
+    CHARACTER_GROUP,
+    OwnMotionsOption,
+    ProfileOption,
+    SettingsOption,
+    VoiceOption,
+    profile_of,
+)
+from cubeling.app.commands.output import OverwriteOption
+from cubeling.app.commands.play.play_options import (
+    ALL_REALISM,
+    DEFAULT_CAMERA,
+    INSIDE_HELP,
+    PICTURE_GROUP,
+    CharacterOption,
+    CodecOption,
+    ControllerOption,
+    CubesOption,
+    FolderOption,
+    IdleOption,
+    IntrinsicsOption,
+    LanguageOption,
+    LinesOption,
+    MotionsOption,
+    OutputOption,
+    PatienceOption,
+    PersonalityOption,
+    PicturesOption,
+    QualityOption,
+    RealismOption,
+    RecordOption,
+    RobotOption,
+    RobotSettingsOption,
+    ScenarioArgument,
+    SoundsOption,
+    SourceOption,
+    codecs_of,
+)
+from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import (
+    inside_of,
+    realism_of,
+)
+from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
+from cubeling.app.scenarios import check_scenario
+from cubeling.app.ui.display import has_display
+from cubeling.characters import check_controller
+from cubeling.robot.network import DEFAULT_SITE
+
+
+@with_preferences
+def play(
+    scenario: ScenarioArgument,
+    source: SourceOption = DEFAULT_CAMERA,
+    cubes: CubesOption = None,
+    character: CharacterOption = None,
+    controller: ControllerOption = "tree",
+    motions: MotionsOption = None,
+    idle: IdleOption = None,
+    own_motions_only: OwnMotionsOption = False,
+    intrinsics: IntrinsicsOption = None,
+    patience: PatienceOption = 30.0,
+    robot: RobotOption = "sim",
+    record: RecordOption = None,
+    output: OutputOption = None,
+    overwrite: OverwriteOption = False,
+    speed_map: Annotated[
+        str,
+        typer.Option(
+            help="For follow and sketch: corrected, or legacy, as printed in the thesis.",
+            rich_help_panel=CHARACTER_GROUP,
+        ),
+    ] = "corrected",
+    turns: Annotated[
+        float,
+        typer.Option(
+            help="For companion: full turns from least to greatest intensity.",
+            rich_help_panel=CHARACTER_GROUP,
+        ),
+    ] = 2.0,
+    personality: PersonalityOption = None,
+    language: LanguageOption = None,
+    lines: LinesOption = None,
+    profile: ProfileOption = "usual",
+    settings: SettingsOption = None,
+    voice: VoiceOption = None,
+    look: Annotated[
+        str,
+        typer.Option(
+            help="Where the character looks: auto, cube, hand, camera or none.",
+            rich_help_panel=CHARACTER_GROUP,
+        ),
+    ] = "auto",
+    pictures: PicturesOption = True,
+    realism: RealismOption = ALL_REALISM,
+    inside: Annotated[
+        str, typer.Option(help=f"{INSIDE_HELP}.", rich_help_panel=PICTURE_GROUP)
+    ] = "auto",
+    quality: QualityOption = AUTO_QUALITY,
+    robot_settings: RobotSettingsOption = None,
+    codec: CodecOption = "auto",
+    sounds: SoundsOption = None,
+    folder: FolderOption = None,
+    mqtt: Broker = None,
+    player: PlayerName = None,
+    site: Site = DEFAULT_SITE,
+    password_file: PasswordFile = None,
+    ca: Ca = None,
+    *,
+    preferences: GivenPreferences,
+) -> None:
+    """Play with the cube in front of a camera.
+
+    Example: cubeling play companion --record today.mcap
+    """
+    check_scenario(scenario)
+    check_controller(controller)
+    from cubeling.app.running.option_checks import check_inputs, check_output_paths
+    from cubeling.app.session import SessionOptions
+
+    record_codec, video_codec = codecs_of(codec, record, output)
+    options = SessionOptions(
+        scenario=scenario,
+        source=source,
+        cubes=tuple(cubes or ()),
+        character=character,
+        controller=controller,
+        motions=tuple(motions or ()),
+        idle=idle,
+        own_motions_only=own_motions_only,
+        intrinsics=intrinsics,
+        patience_s=patience,
+        speed_map=speed_map,
+        turns=turns,
+        personality=personality,
+        language=language,
+        lines=lines,
+        voice=voice,
+        profile=profile_of(profile, settings),
+        look=look,
+        realism=realism_of(realism),
+        inside=inside_of(inside),
+        quality=checked_quality(quality),
+        robot=robot,
+        robot_settings=robot_settings,
+        record=record,
+        codec=record_codec,
+        video_codec=video_codec,
+        output=output,
+        overwrite=overwrite,
+        pictures=pictures,
+        sounds=sounds,
+        folder=folder,
+    )
+    check_output_paths(options)
+    check_publisher(mqtt, player)
+    options, kept = preferences.open(options)
+    check_inputs(options)
+    # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
+    from cubeling.app.commands.play.progress import play_session
+    from cubeling.app.scenarios.roles import check_cubes
+
+    check_cubes(scenario, options.cubes)  # before a display is missing
+    if options.windowed and not has_display():
+        raise AppError("there is no display here: write a video with --output FILE.mp4")
+    with publisher(mqtt, player, site, password_file, ca) as line:
+        play_session(options, f"playing {scenario}", player=line, preferences=kept)

@@ -1,0 +1,206 @@
+"""The options of the commands that play sessions.
+
+Those without a group matter most, and come first in a help.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cubeling.app.commands.character_options import CHARACTER_GROUP, SPEECH_GROUP
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import INSIDE_CHOICES, NO_REALISM, REALISM_CHOICES
+from cubeling.app.scenarios import scenario_names, scenario_summary
+from cubeling.app.ui.output_formats import AUTO_CODEC, ENCODERS
+from cubeling.characters import CONTROLLER_CHOICES
+from cubeling.characters.rendering import QUALITIES
+
+DEFAULT_CAMERA = "camera:0"
+
+PICTURE_GROUP = "The picture"
+FILES_GROUP = "Files"
+"""Headings of the options that matter less, in the help."""
+
+
+def describe(scenario: str) -> str:
+    """Return what a scenario is, or what is wrong with the package that adds it."""
+    try:
+        text = f"{scenario_summary(scenario)}."
+    except AppError as error:
+        text = str(error)
+    return f"{scenario}: {text}"
+
+
+ScenarioArgument = Annotated[
+    str,
+    typer.Argument(
+        help="\n\n".join(map(describe, scenario_names())),
+        autocompletion=lambda: list(scenario_names()),
+    ),
+]
+SourceOption = Annotated[
+    str,
+    typer.Option(
+        "--source",
+        "-s",
+        help='Where the pictures come from: camera:0 (with options: "camera:0?exposure=8"), '
+        "a video, a session (.mcap), http://PHONE:8080/video, rtsp://CAMERA/live, or "
+        "synthetic:companion.",
+    ),
+]
+CubeOption = Annotated[str | None, typer.Option(help="A bundled cube, or your own .toml file.")]
+CubesOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--cube",
+        metavar="<str>",
+        help="A bundled cube, or your own .toml file. Repeat the option to name more cubes: they "
+        "are recognised when you show them.",
+    ),
+]
+CharacterOption = Annotated[
+    str | None, typer.Option(help="A bundled character, or a .glb, .gltf or .vrm file.")
+]
+ControllerOption = Annotated[
+    str,
+    typer.Option(
+        help="What moves the character: "
+        + "; ".join(f"{name}, {choice.summary}" for name, choice in CONTROLLER_CHOICES.items())
+        + ".",
+        autocompletion=lambda: list(CONTROLLER_CHOICES),
+        rich_help_panel=CHARACTER_GROUP,
+    ),
+]
+MotionsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="A motion for the controller: a .bvh, .amc or .glb file, CHARACTER.glb#CLIP, or a "
+        "folder of them; may be repeated. Without it, the character's own clips.",
+        rich_help_panel=CHARACTER_GROUP,
+    ),
+]
+IdleOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="Stand as a person does: a file of cubeling idle learn.",
+        rich_help_panel=CHARACTER_GROUP,
+    ),
+]
+LanguageOption = Annotated[
+    str | None,
+    typer.Option(
+        help="The language in which the character speaks: en, es, that of your lines, or none. In "
+        "a window it speaks English unless you choose."
+    ),
+]
+LinesOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="What the character says: a .toml file; see docs/speaking.md.",
+        rich_help_panel=SPEECH_GROUP,
+    ),
+]
+RealismOption = Annotated[
+    str,
+    typer.Option(
+        help="What makes the characters look real, separated by commas: "
+        + "; ".join(f"{name}, {meaning}" for name, meaning in REALISM_CHOICES.items())
+        + f"; or {NO_REALISM}.",
+        rich_help_panel=PICTURE_GROUP,
+    ),
+]
+ALL_REALISM = ",".join(REALISM_CHOICES)
+INSIDE_HELP = "When the cube is a window with the character inside: " + "; ".join(
+    f"{name}, {meaning}" for name, meaning in INSIDE_CHOICES.items()
+)
+QualityOption = Annotated[
+    str,
+    typer.Option(
+        help="How finely characters are drawn: auto, the best that holds the camera's rate, "
+        f"or one of {', '.join(QUALITIES)}.",
+        rich_help_panel=PICTURE_GROUP,
+    ),
+]
+PersonalityOption = Annotated[
+    str | None,
+    typer.Option(help="A bundled personality, or your own .toml file."),
+]
+IntrinsicsOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="File of the calibrated camera (ROS camera_info YAML); without it, a lens is guessed."
+    ),
+]
+PatienceOption = Annotated[
+    float,
+    typer.Option(
+        metavar="<s>",
+        help="How long to go on without a camera that stalls or is lost, until it is back.",
+        rich_help_panel=PICTURE_GROUP,
+    ),
+]
+RobotOption = Annotated[
+    str,
+    typer.Option(
+        "--robot",
+        "-r",
+        help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT. Other protocols than "
+        "ours have a prefix: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo.",
+    ),
+]
+RobotSettingsOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="A .toml file that says what a Pleo or an OpenCat does for each mood.",
+        rich_help_panel=FILES_GROUP,
+    ),
+]
+RecordOption = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
+CodecOption = Annotated[
+    str,
+    typer.Option(
+        help="How --record stores pictures: auto (the camera's own JPEG, else h264), jpeg, or h264 "
+        "(smaller). Or what encodes the video of --output: "
+        f"{', '.join(list(ENCODERS)[:-1])}.",
+        rich_help_panel=FILES_GROUP,
+    ),
+]
+FolderOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="Where the keys S and R put snapshots and recordings; the folder Cubeling in your "
+        "home folder without it.",
+        rich_help_panel=FILES_GROUP,
+    ),
+]
+OutputOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--output",
+        "-o",
+        help="Write a video (.mp4, .mkv, .webm), an animation (.gif) or a sheet of pictures (.png) "
+        "instead of opening a window.",
+    ),
+]
+PicturesOption = Annotated[
+    bool,
+    typer.Option(
+        "--pictures/--no-pictures",
+        help="Draw the pictures, or only track the cube.",
+        rich_help_panel=PICTURE_GROUP,
+    ),
+]
+SoundsOption = Annotated[
+    Path | None,
+    typer.Option(
+        help="A folder of .wav files instead of our sounds; see cubeling sounds.",
+        rich_help_panel=FILES_GROUP,
+    ),
+]
+
+
+def codecs_of(codec: str, record: Path | None, output: Path | None) -> tuple[str, str]:
+    """Return how a recording and a video store pictures: what --codec names is known to one."""
+    of_video = output is not None and (codec in ENCODERS or record is None)
+    return (AUTO_CODEC, codec) if of_video else (codec, AUTO_CODEC)

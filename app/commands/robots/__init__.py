@@ -1,0 +1,1 @@
+"""The commands that are for robots, here and on other computers."""

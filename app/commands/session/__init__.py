@@ -1,1 +1,0 @@
-"""The commands that play, replay and export sessions, a file each."""

@@ -1,0 +1,1 @@
+"""The methods by which a batch of chains is solved, a file each."""
