@@ -28,6 +28,7 @@ from cubeling.app.session.bundled import bundled_session
 from cubeling.app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from cubeling.app.ui.calibration.coach_lines import write_coverage
 from cubeling.app.ui.calibration.session import Advice, CalibrationSession, Picture
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
 from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
@@ -90,12 +91,17 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
 
 def in_window(picture: Picture, scenario: str, now: float, length: float) -> Picture:
     """Return a picture of a replay as the window shows it, paused."""
-    layer = PlaybackLayer((scenario,), Path(), {})
+    layer = PlaybackLayer((scenario,), Path(), {}, lambda: None)
     with SessionFile(bundled_session(scenario)) as session:
         marks = tuple(PlaybackMark(time, event) for time, event in session.events)
     position = Position(now, length, 0.0, length, marks=marks)
     layer.report(SessionStatus(scenario, paused=True, position=position))
-    return layer.draw(picture)
+    height, width = picture.shape[:2]
+    strip = round(layer.strip_height * height / PICTURE_HEIGHT)
+    shown = np.vstack([picture, np.zeros((strip, width, 3), np.uint8)])
+    for card in layer.cards((width, height)):
+        card.blend_over(shown)
+    return shown
 
 
 def draw_sheet(name: str) -> None:

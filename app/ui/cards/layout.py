@@ -30,6 +30,9 @@ of 16:9, the action's card has room beside it."""
 SMOOTHING_S, MIN_STAY_S = 0.5, 2.0
 """Time constant of how much of a card hides something, and how long it stays in a corner."""
 
+SLIDING_S = 0.4
+"""Time in which a card slides to another corner."""
+
 STAY_ADVANTAGE, FREE_ADVANTAGE = 0.1, 0.05
 """How much more of something a card may hide than it would in another corner, and than in a corner
 from which it drives another card."""
@@ -68,6 +71,21 @@ def are_apart(box: Rect, others: Sequence[Rect]) -> bool:
     )
 
 
+@dataclass(frozen=True)
+class _Slide:
+    """The way of a card to a place, in units of the canvas."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    since: float
+
+    def at(self, now: float) -> tuple[float, float]:
+        share = min(max((now - self.since) / SLIDING_S, 0.0), 1.0)
+        share = share * share * (3.0 - 2.0 * share)  # it starts and stops softly
+        (x, y), (to_x, to_y) = self.start, self.end
+        return x + share * (to_x - x), y + share * (to_y - y)
+
+
 @dataclass
 class _Placed:
     """A card with its history."""
@@ -88,7 +106,20 @@ class CardLayout:
 
     def __init__(self) -> None:
         self._cards: dict[Corner, _Placed] = {}
+        self._slides: dict[Corner, _Slide] = {}
         self._now: float | None = None
+
+    def slide(self, home: Corner, box: Rect, now: float) -> tuple[float, float]:
+        """Return the top left corner of a card on its way to a box, at a time [s].
+
+        It starts on the way when the box is another one; a new card is there at once.
+        """
+        place = box[:2]
+        slide = self._slides.get(home) or _Slide(place, place, now)
+        if slide.end != place:
+            slide = _Slide(slide.at(now), place, now)
+        self._slides[home] = slide
+        return slide.at(now)
 
     def update(
         self,

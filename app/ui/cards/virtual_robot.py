@@ -1,6 +1,7 @@
 """A virtual robot on the screen, which shows the emotion when there is no real robot."""
 
 import math
+from collections.abc import Callable
 
 import cv2
 import moderngl
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from cubeling.affect import HAPPY_ABOVE, Emotion, closest_word
 from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.ui.canvas import Canvas
 from cubeling.app.ui.display import is_software_renderer
 from cubeling.app.ui.palette import PAPER, between, mood_color
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
@@ -17,9 +19,9 @@ from cubeling.characters.rendering import CameraView, SceneCharacter, Stage
 MAX_SIDE_PX = 216
 """Largest picture that is drawn [px]; a larger one is scaled up, to spare software rendering."""
 
-SOFTWARE_INTERVAL_S = 0.08
-"""Shortest time between two pictures with software rendering [s]: every third frame of a usual
-camera, since the character on the table needs the processor too."""
+SOFTWARE_INTERVAL_S = 0.099
+"""Shortest time between two pictures with software rendering [s]: ten a second, every third frame
+of a usual camera, since the character on the table needs the processor too."""
 
 YAW_RAD = -0.52
 """Heading of the robot, to the right of the camera, so that its tail is visible [rad]."""
@@ -49,6 +51,7 @@ class VirtualRobot:
         software = is_software_renderer(str(context.info["GL_RENDERER"]))
         self._interval = SOFTWARE_INTERVAL_S if software else 0.0
         self._last: tuple[float, NDArray[np.uint8]] | None = None
+        self._card: tuple[object, NDArray[np.uint8], Canvas] | None = None
         self._eye = np.asarray(np.linalg.inv(self._camera_from_table)[:3, 3], np.float64)
 
     def portrait(self, target: EmotionTarget) -> NDArray[np.uint8]:
@@ -67,6 +70,19 @@ class VirtualRobot:
             picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_CUBIC), np.uint8)
         self._last = target.timestamp, picture
         return picture
+
+    def card(self, content: object, draw: Callable[[], Canvas]) -> Canvas:
+        """Return the card with the last picture: `draw` is called where the content is another."""
+        assert self._last is not None, "a portrait comes first"
+        picture = self._last[1]
+        if self._card is None or self._card[0] != content or self._card[1] is not picture:
+            self._card = content, picture, draw()
+        return self._card[2]
+
+    def fit(self, side: int) -> None:
+        """Give pictures of another side [px] from the next one on."""
+        if side != self.side:
+            self.side, self._last = max(16, side), None
 
     def command(self, target: EmotionTarget) -> CharacterCommand:
         """Return the command that shows an emotion.

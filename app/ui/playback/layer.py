@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import dated_file, short_path
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Card
 from cubeling.app.ui.playback import timeline
 from cubeling.app.ui.playback.announcements import Announcements
 from cubeling.app.ui.playback.cards import draw_ending, draw_keys
@@ -42,7 +42,7 @@ ENDING_KEYS = "Space plays it again  ·  Esc or Enter closes"
 class PlaybackLayer:
     """What the player asks for, and what is shown because of it.
 
-    The window passes on keys and mouse, and shows what `draw` returns.
+    The window passes on keys and mouse, and shows what `cards` returns.
 
     Parameters
     ----------
@@ -52,6 +52,8 @@ class PlaybackLayer:
         Where snapshots go.
     actions
         What carries out requests that need a window.
+    picture
+        Returns the picture with its cards, (H, W, 3), to keep it; None before the first.
     clock, now
         Return the time [s], for notices, and the local time, for the names of files.
     """
@@ -61,11 +63,13 @@ class PlaybackLayer:
         scenarios: Sequence[str],
         folder: Path,
         actions: Mapping[WindowRequest, Callable[[], None]],
+        picture: Callable[[], Picture | None],
         clock: Callable[[], float] = time.monotonic,
         now: Callable[[], datetime] = datetime.now,
     ) -> None:
         self.mirrored = False
         """Whether the picture is to be shown as in a mirror."""
+        self._picture_shown = picture
         self._scenarios, self._folder = tuple(scenarios), folder
         self._announcements, self._now = Announcements(clock), now
         self._actions: dict[WindowRequest, Callable[[], None]] = {
@@ -91,7 +95,6 @@ class PlaybackLayer:
         self._dragging = False
         self._changed = True
         self._width = 0.0
-        self._picture: Picture | None = None
 
     @property
     def changed(self) -> bool:
@@ -165,28 +168,25 @@ class PlaybackLayer:
         """Release the mouse's button."""
         self._dragging = False
 
-    def draw(self, picture: Picture) -> Picture:
-        """Return a picture (H, W, 3), whose cards are drawn, with everything over and under it."""
+    def cards(self, size: tuple[int, int]) -> list[Card]:
+        """Return what lies over a picture of a size [px], and the strip under it."""
         self._changed = False
-        self._picture = picture
-        scale = picture.shape[0] / PICTURE_HEIGHT
-        self._width = width = picture.shape[1] / scale
-        shown = picture.copy()
+        scale = size[1] / PICTURE_HEIGHT
+        self._width = width = size[0] / scale
+        cards = []
         if self._status.ending is not None and not self._keys and self._menu is None:
-            draw_ending(self._status.ending, ENDING_KEYS, width, scale).blend_over(shown)
-        for card in self._announcements.draw(self._status, width, scale):
-            card.blend_over(shown)
+            cards.append(draw_ending(self._status.ending, ENDING_KEYS, width, scale))
+        cards += self._announcements.draw(self._status, width, scale)
         if self._keys:
-            draw_keys(width, scale).blend_over(shown)
+            cards.append(draw_keys(width, scale))
         if self._menu is not None:
-            self._menu.draw(width, scale).blend_over(shown)
+            cards.append(self._menu.draw(width, scale))
         position = self._status.position
         if position is None:
-            return shown
+            return cards
         if self._pointer is not None and not timeline.is_on_button(self._pointer):
-            timeline.draw_pointer(self._pointer, position, width, scale).blend_over(shown)
-        strip = timeline.draw_strip(position, self._status.paused, width, scale)
-        return np.vstack([shown, strip])
+            cards.append(timeline.draw_pointer(self._pointer, position, width, scale))
+        return [*cards, timeline.strip_of(position, self._status.paused, width, scale)]
 
     def _request(self, request: Request | None) -> None:
         """Carry out a request, or keep it for the session."""
@@ -246,13 +246,14 @@ class PlaybackLayer:
             self._actions[WindowRequest.QUIT]()
 
     def _snapshot(self) -> None:
-        if self._picture is None:
+        picture = self._picture_shown()
+        if picture is None:
             return
         try:
             path = dated_file(
                 self._folder, self._status.scenario or "cubeling", ".png", self._now()
             )
-            write_whole(path, cv2.imencode(".png", self._picture)[1].tobytes(), AppError)
+            write_whole(path, cv2.imencode(".png", picture)[1].tobytes(), AppError)
         except (AppError, OSError) as error:
             self.notify(f"No snapshot was kept: {error}")
         else:

@@ -1,9 +1,9 @@
 """The strip under the picture of a recording: where it is, and what happened when."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
 from cubeling.app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between
@@ -35,8 +35,16 @@ MARK_COLORS: dict[str, Color] = {
 """Colours of the marks by how their event begins; others are gestures."""
 
 
-def draw_strip(position: Position, paused: bool, width: float, scale: float) -> NDArray[np.uint8]:
-    """Return the strip under a picture, (height, width, 3) BGR; `width` in units of the canvas."""
+def strip_of(position: Position, paused: bool, width: float, scale: float) -> Card:
+    """Return the strip under a picture; `width` in units of the canvas.
+
+    It changes as often as the time on it does: a tenth of a second is less than a pixel or two.
+    """
+    return _strip(replace(position, now=int(10 * position.now + 1e-6) / 10), paused, width, scale)
+
+
+@lru_cache(maxsize=2)
+def _strip(position: Position, paused: bool, width: float, scale: float) -> Card:
     canvas = _background(position.marks, position.length, width, scale).copy()
     _button(canvas, paused)
     shown = position.now if position.target is None else position.target
@@ -63,7 +71,7 @@ def draw_strip(position: Position, paused: bool, width: float, scale: float) -> 
         canvas.disc(target, TRACK_Y, 7, PAPER)
     canvas.disc(now, TRACK_Y, 10, PAPER)
     canvas.disc(now, TRACK_Y, 8, PLAYED)
-    return canvas.color
+    return canvas.strip(PICTURE_HEIGHT)
 
 
 def position_at(x: float, position: Position, width: float) -> float:
@@ -77,6 +85,7 @@ def is_on_button(x: float) -> bool:
     return x < TRACK_LEFT - 20
 
 
+@lru_cache(maxsize=2)
 def draw_pointer(x: float, position: Position, width: float, scale: float) -> Card:
     """Return the label of the place under the mouse, above the strip: its time, or its mark."""
     time = position_at(x, position, width)

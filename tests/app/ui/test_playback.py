@@ -52,7 +52,12 @@ class Desk:
             for request in (WindowRequest.QUIT, WindowRequest.PANELS, WindowRequest.FULL_SCREEN)
         }
         self.layer = PlaybackLayer(
-            ("follow", "sketch"), folder, actions, lambda: self.time, lambda: NOW
+            ("follow", "sketch"),
+            folder,
+            actions,
+            lambda: PICTURE,
+            lambda: self.time,
+            lambda: NOW,
         )
 
     def report(self, **status):
@@ -64,7 +69,12 @@ class Desk:
             self.layer.press(name, shift=bool(shift))
 
     def shown(self):
-        return self.layer.draw(PICTURE)
+        cards = self.layer.cards((640, 360))
+        shown = np.zeros((360 + round(self.layer.strip_height / 2), 640, 3), np.uint8)
+        shown[:360] = PICTURE
+        for card in cards:
+            card.blend_over(shown)
+        return shown
 
 
 @pytest.fixture
