@@ -103,6 +103,7 @@ class _Runner:
     def close(self) -> None:
         self._gaps.close()
         self._controls.close()
+        self._transport.close()
 
     def _advance(self) -> bool:
         """Take the next frame; return False at the end of the session."""

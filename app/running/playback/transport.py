@@ -8,6 +8,7 @@ from cubeling.app.running.opening import is_seekable
 from cubeling.app.running.playback.frame_feed import FrameFeed
 from cubeling.app.running.playback.saved_states import SavedStates
 from cubeling.app.ui.playback.status import PlaybackMark, Position
+from cubeling.robot import Closeable
 from cubeling.tracking import Frame, Health, LiveFrames
 
 
@@ -25,7 +26,7 @@ class _Target:
         return frame.timestamp >= self.timestamp and frame.index >= self.index
 
 
-class Transport:
+class Transport(Closeable):
     """Returns the frames of a session, and moves in them.
 
     In a recording the state after a seek is that of all frames before it: the pipeline goes on from
@@ -49,6 +50,10 @@ class Transport:
         """Whether no frame comes until the player goes on."""
         self.ended = False
         """Whether the recording has come to its end, and the player has not sought since."""
+
+    def close(self) -> None:
+        """End what reads ahead; call it before the source is closed. A second call does nothing."""
+        self._feed.close()
 
     @property
     def idle(self) -> bool:
