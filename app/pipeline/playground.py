@@ -69,6 +69,7 @@ LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
 
 STATE_NAMES = (
+    "intrinsics",
     "scenario",
     "_tracker",
     "_gestures",
@@ -280,6 +281,7 @@ class Playground:
         replay: ReplayInputs | None = None,
         *,
         drawn: bool = True,
+        measured: bool | None = None,
     ) -> Step:
         """Process one frame.
 
@@ -292,7 +294,9 @@ class Playground:
         replay
             Recorded messages to use instead of computing them; None to compute all.
         drawn
-            Whether to measure the picture's appearance and to draw it; all else is the same.
+            Whether to draw the picture; all else is the same.
+        measured
+            Whether to measure the picture's appearance; None to do so if it is drawn.
 
         Returns
         -------
@@ -309,7 +313,7 @@ class Playground:
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
         appearance = replay.appearance
-        if appearance is None and drawn:
+        if appearance is None and (drawn if measured is None else measured):
             appearance = self.see(frame, state, controls)
         self._lap("appearance")
         inputs = inputs or Inputs()

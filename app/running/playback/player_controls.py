@@ -77,7 +77,7 @@ class PlayerControls:
             session.change_setting(request.setting, request.value)
         except (AppError, AffectError) as error:
             session.screen.notify(str(error))
-        self._transport.save_state(by_player=True)
+        self._transport.save_state(exchanged=True)
 
     def _record(self, _: Record) -> None:
         """Begin a recording, or end it."""
@@ -121,7 +121,7 @@ class PlayerControls:
         except AppError as error:
             session.screen.notify(f"Nothing is recorded: {error}")
             return
-        transport.save_state(by_player=True)
+        transport.save_state(acted=True)
         session.screen.notify(f"Recording from the start: {short_path(path)}")
 
 
