@@ -11,7 +11,6 @@ from cubeling.app.running.summary import Summary
 from cubeling.characters.rendering import QUALITIES
 from cubeling.tracking import Frame
 
-
 WAITING = "waiting"
 """The part of a frame's time in which nothing is done for it."""
 

@@ -34,11 +34,7 @@ class FrameFeed(Closeable):
     def next(self) -> Frame | Health | None:
         """Return the next frame, a live source's health while it has none, or None at the end."""
         source = self._session.source
-        found: Frame | Health | None
-        if isinstance(source, LiveFrames):
-            found = self._next_live(source)
-        else:
-            found = self._next_stored()
+        found = self._next_live(source) if isinstance(source, LiveFrames) else self._next_stored()
         if isinstance(found, Frame):
             self.last = found
         return found

@@ -12,8 +12,9 @@ from cubeling.app.ui.screen import NullScreen
 class Player(NullScreen):
     """Asks for what the script says: (after how many pictures, or "idle", a request).
 
-    "idle" is when nothing happens any more. `Inputs` are asked of the scenario. Instead of a request there may be a function, which is
-    called with the player. At the end of the script, a player leaves when nothing happens.
+    "idle" is when nothing happens any more. `Inputs` are asked of the scenario.
+    Instead of a request there may be a function, which is called with the player. At the end of the
+    script, a player leaves when nothing happens.
     """
 
     attended = True
