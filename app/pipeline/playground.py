@@ -347,7 +347,7 @@ class Playground:
             tracker_error=self._tracker_error,
         )
         if drawn:
-            step = replace(step, picture=self.draw(step))
+            step = self._drawn(step)
         self._lap("drawing")
         return step
 
@@ -449,8 +449,12 @@ class Playground:
     def with_picture(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
         appearance = step.appearance or self.see(step.frame, step.state, step.controls)
-        step = replace(step, appearance=appearance)
-        return replace(step, picture=self.draw(step))
+        return self._drawn(replace(step, appearance=appearance))
+
+    def _drawn(self, step: Step) -> Step:
+        body = PosedBody(self.character, self._parts, step.posed)
+        close_up = self._renderer.close_up(step, body, self._complexion.blood)
+        return replace(step, picture=self.draw(step), close_up=close_up)
 
     def close(self) -> None:
         """Release the graphics; a second call does nothing."""

@@ -49,6 +49,12 @@ class Card:
     transparency: NDArray[np.float32]
     """1 − `opacity`, (height, width)."""
 
+    def box(self, scale: float) -> tuple[float, float, float, float]:
+        """Return left, top, right and bottom in units of a canvas of a scale."""
+        height, width = self.opacity.shape
+        left, top = self.x / scale, self.y / scale
+        return left, top, left + width / scale, top + height / scale
+
     def blend_over(self, picture: NDArray[np.uint8]) -> None:
         """Blend the card over a picture (H, W, 3), in place; it is clipped to the picture."""
         height, width = self.opacity.shape

@@ -38,8 +38,15 @@ STAY_ADVANTAGE, FREE_ADVANTAGE = 0.1, 0.05
 from which it drives another card."""
 
 
-def card_box(corner: Corner, size: tuple[float, float], picture_width: float) -> Rect:
+def card_box(
+    corner: Corner,
+    size: tuple[float, float],
+    picture_width: float,
+    right_top: float = CARD_MARGIN,
+) -> Rect:
     """Return the left, top, right and bottom edge of a card of a size, in units of the canvas.
+
+    In the top right corner, cards begin at `right_top`.
 
     >>> card_box("bottom right", (300.0, 100.0), 1280.0)
     (956.0, 596.0, 1256.0, 696.0)
@@ -53,7 +60,7 @@ def card_box(corner: Corner, size: tuple[float, float], picture_width: float) ->
     if corner.startswith("bottom"):
         y = PICTURE_HEIGHT - height - CARD_MARGIN
     elif CARD_MARGIN + width + CARD_GAP <= (picture_width - HINT_ROOM) / 2:
-        y = CARD_MARGIN
+        y = right_top if corner == "top right" else CARD_MARGIN
     else:
         y = HINT_TOP + HINT_HEIGHT + CARD_GAP
     return x, y, x + width, y + height
@@ -101,13 +108,18 @@ class CardLayout:
     """Chooses corners for the cards of one sequence of pictures.
 
     Cards are named by their first corner. A card moves where it hides something and another corner
-    is better.
+    is better. In the top right corner they begin at `right_top`.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, right_top: float = CARD_MARGIN) -> None:
+        self._right_top = right_top
         self._cards: dict[Corner, _Placed] = {}
         self._slides: dict[Corner, _Slide] = {}
         self._now: float | None = None
+
+    def box(self, corner: Corner, size: tuple[float, float], picture_width: float) -> Rect:
+        """Return where a card of a size lies in a corner, as `card_box` does."""
+        return card_box(corner, size, picture_width, self._right_top)
 
     def slide(self, home: Corner, box: Rect, now: float) -> tuple[float, float]:
         """Return the top left corner of a card on its way to a box, at a time [s].
@@ -140,11 +152,11 @@ class CardLayout:
         for home, size in cards.items():
             card = self._cards.setdefault(home, _Placed(home, size))
             card.size = size
-            boxes = {corner: card_box(corner, size, picture_width) for corner in CORNERS}
+            boxes = {corner: self.box(corner, size, picture_width) for corner in CORNERS}
             hidden = [_hidden_share(box, subjects) for box in boxes.values()]
             card.hidden += fresh * (np.array(hidden) - card.hidden)
             others = [
-                card_box(each.corner, each.size, picture_width)
+                self.box(each.corner, each.size, picture_width)
                 for each in self._cards.values()
                 if each is not card
             ]

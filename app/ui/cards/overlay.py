@@ -3,6 +3,7 @@
 import math
 from functools import lru_cache
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +17,6 @@ from cubeling.app.ui.cards.layout import (
     HINT_TOP,
     CardLayout,
     Corner,
-    card_box,
 )
 from cubeling.app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place, subtitle_room
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
@@ -47,6 +47,9 @@ MOOD_BAR_X, MOOD_BAR_WIDTH = 116.0, 176.0
 
 VIRTUAL_ROBOT_SIDE, VIRTUAL_ROBOT_FRAME = 180.0, 8.0
 """Side of the virtual robot's picture, and width of its card's frame."""
+
+CLOSE_UP_SIDE = 256.0
+"""Side of the look into the cube from near by."""
 
 VIRTUAL_ROBOT_TEXT_Y = VIRTUAL_ROBOT_SIDE + VIRTUAL_ROBOT_FRAME + 4.0
 """Top of the text below the picture."""
@@ -93,7 +96,8 @@ def cards_over(
     """
     scale = size[1] / PICTURE_HEIGHT
     width = size[0] / scale
-    finished = [_hint(step.outcome.hint, width, scale)]
+    hint = step.outcome.hint
+    finished = [_hint(hint, width, scale)] if hint else []
     if virtual_robot is None or robot.real or width < MIN_VIRTUAL_ROBOT_WIDTH:
         mood = _robot(robot.link, robot.label, _finite(robot.mood), scale)
     else:
@@ -109,6 +113,8 @@ def cards_over(
         cards["bottom left"] = _action(
             name, moves, command.speed if moves else command.weight, scale
         )
+    if step.close_up is not None and width >= MIN_VIRTUAL_ROBOT_WIDTH:
+        cards["top left"] = _close_up(step.close_up, scale)
     sizes = {home: canvas.size for home, canvas in cards.items()}
     subjects = [
         (left / scale, top / scale, right / scale, bottom / scale)
@@ -119,7 +125,7 @@ def cards_over(
     corners = layout.update(sizes, subjects, width, now)
     boxes = []
     for home, corner in corners.items():
-        boxes.append(card_box(corner, sizes[home], width))
+        boxes.append(layout.box(corner, sizes[home], width))
         finished.append(cards[home].card(*layout.slide(home, boxes[-1], now)))
     said = subtitle(step.command.speech, now)
     if said:
@@ -209,6 +215,16 @@ def _intensity(canvas: Canvas, weight: float, color: Color) -> None:
     canvas.disc(middle, BAR_Y, 2.5, QUIET)
     canvas.disc(knob, BAR_Y, 11, PAPER)
     canvas.disc(knob, BAR_Y, 8.5, color)
+
+
+def _close_up(picture: NDArray[np.uint8], scale: float) -> Canvas:
+    side = CLOSE_UP_SIDE + 2 * VIRTUAL_ROBOT_FRAME
+    canvas = Canvas(side, side, scale)
+    size = round(CLOSE_UP_SIDE * scale)
+    enlarged = cv2.resize(picture, (size, size), interpolation=cv2.INTER_CUBIC)
+    image = np.asarray(enlarged, np.uint8)
+    canvas.picture(VIRTUAL_ROBOT_FRAME, VIRTUAL_ROBOT_FRAME, image, 12)
+    return canvas
 
 
 def _finite(mood: float) -> float:

@@ -33,6 +33,13 @@ class CardTextures:
         self._quad = context.vertex_array(self._program, [])
         # A card is kept with its texture: its arrays are then those of no other card.
         self._kept: dict[tuple[int, int], tuple[Card, moderngl.Texture]] = {}
+        self._used: dict[tuple[int, int], tuple[Card, moderngl.Texture]] = {}
+
+    def begin(self) -> None:
+        """Begin a picture: what the last one did not use is released."""
+        for key in self._kept.keys() - self._used.keys():
+            self._kept.pop(key)[1].release()
+        self._used = {}
 
     def draw(
         self, cards: Sequence[Card], screen: moderngl.Framebuffer, left: int, top: int
@@ -41,24 +48,23 @@ class CardTextures:
 
         `left` and `top` are from the framebuffer's lower left corner [px].
         """
-        used: dict[tuple[int, int], tuple[Card, moderngl.Texture]] = {}
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
         for card in cards:
             key = id(card.color), id(card.opacity)
-            kept = used.get(key) or self._kept.pop(key, None) or (card, self._upload(card))
-            used[key] = kept
+            if key not in self._kept:
+                self._kept[key] = card, self._upload(card)
+            self._used[key] = kept = self._kept[key]
             height, width = card.opacity.shape
             screen.viewport = left + card.x, top - card.y - height, width, height
             kept[1].use(0)
             self._quad.render(moderngl.TRIANGLE_STRIP, 4)
         self._context.disable(moderngl.BLEND)
-        self._release_kept()
-        self._kept = used
 
     def release(self) -> None:
         """Release the textures and the shader."""
-        self._release_kept()
+        self._used = {}
+        self.begin()
         self._quad.release()
         self._program.release()
 
@@ -69,8 +75,3 @@ class CardTextures:
         texture = self._context.texture((width, height), 4, pixels.tobytes())
         texture.filter = moderngl.NEAREST, moderngl.NEAREST
         return texture
-
-    def _release_kept(self) -> None:
-        for _, texture in self._kept.values():
-            texture.release()
-        self._kept = {}

@@ -123,7 +123,7 @@ class WindowSurface:
         glfw.set_mouse_button_callback(self._window, self._on_button)
         self.context = create_context(window=True)
         """Where a `Stage` for this window draws."""
-        self._whole = size
+        self._whole, self._card_origin = size, (0, 0)
         self._texture = self.context.texture(size, 4)
         # OpenCV adds the fourth channel in a quarter of the time that a software driver takes.
         self._pixels = np.empty((size[1], size[0], 4), np.uint8)
@@ -189,8 +189,16 @@ class WindowSurface:
         self._texture.use(0)
         self._program["mirrored"], self._program["brightness"] = mirrored, brightness
         self._quad.render(moderngl.TRIANGLE_STRIP, 4)
-        self._cards.draw(cards, screen, left, top)
-        screen.viewport = (0, 0, wide, high)
+        self._card_origin = left, top
+        self._cards.begin()
+        self.paint_cards(cards)
+
+    def paint_cards(self, cards: Sequence[Card]) -> None:
+        """Draw cards over what was painted; after `paint`, over the picture that it has drawn."""
+        screen = self.context.detect_framebuffer(0)
+        screen.use()
+        self._cards.draw(cards, screen, *self._card_origin)
+        screen.viewport = (0, 0, *glfw.get_framebuffer_size(self._window))
 
     def shown_size(self, width: int, height: int, below: int = 0) -> tuple[int, int]:
         """Return width and height of a picture in the window [px], with so much room below it."""

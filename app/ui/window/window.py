@@ -1,5 +1,6 @@
 """The live window: the picture with its cards, what the player asks for, and the panels."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,12 +13,14 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Rect, RobotView, Step
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Card
+from cubeling.app.ui.cards.hint_reader import HintReader
 from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import cards_over, notice_card, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.panels.drawing.layer import PanelLayer
 from cubeling.app.ui.panels.monitor import SessionMonitor
+from cubeling.app.ui.playback.corner_buttons import ROOM_BELOW
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.requests import SessionRequest, WindowRequest
 from cubeling.app.ui.playback.status import SessionStatus
@@ -82,10 +85,12 @@ class Window(WindowSurface):
             self._picture_with_cards,
         )
         self._layer.mirrored = began.mirror
+        # A player in front of a camera is asked once what to play.
+        self._layer.shows_scenarios = not strip and not began.welcomed
         self._virtual_robot = VirtualRobot(
             self.context, virtual_robot_side(max(height, round(PICTURE_HEIGHT)))
         )
-        self._layout = CardLayout()
+        self._layout = CardLayout(ROOM_BELOW)
         self._panels: PanelLayer | None = None
         if monitor is not None:
             self._panels = PanelLayer(self._window, self.context, monitor, preferences)
@@ -93,19 +98,24 @@ class Window(WindowSurface):
         self._shown: tuple[Step, RobotView] | None = None
         self._pointer = (0.0, 0.0)
         self._titled = ""
+        self._strip, self._told = strip, True
+        self._hint_reader = HintReader()
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step, and return what the player asks of the scenario."""
-        self.preview(step, robot)
+        self._present(self._hint_reader.update(step), robot)
         return self._layer.take_inputs()
 
     def preview(self, step: Step, robot: RobotView) -> None:
-        """Show a step; what the player asks of the scenario is returned by the next `show`."""
+        """Show a step on the way to another one, without what it tells of a moment that passes."""
+        self._present(step, robot, told=False)
+
+    def _present(self, step: Step, robot: RobotView, *, told: bool = True) -> None:
         if self.closed:
             return
         if self._shown is not None and step.frame.timestamp < self._shown[0].frame.timestamp:
-            self._layout = CardLayout()  # it goes on from an earlier frame
-        self._shown = step, robot
+            self._layout = CardLayout(ROOM_BELOW)  # it goes on from an earlier frame
+        self._shown, self._told = (step, robot), told
         self._redraw()
 
     def wait(self, notice: Notice | None) -> None:
@@ -141,6 +151,7 @@ class Window(WindowSurface):
             window_size=self.chosen_size,
             full_screen=self.fills_screen,
             mirror=self._layer.mirrored,
+            welcomed=self._preferences.now.welcomed or not self._strip,
         )
         if self._panels is not None:
             self._panels.close()
@@ -179,31 +190,31 @@ class Window(WindowSurface):
             self.poll()
             return
         step, robot = self._shown
+        over: list[Card] = []
         if step.picture is not None:
             height, width = step.picture.shape[:2]
             below = round(self._layer.strip_height * height / PICTURE_HEIGHT)
             size = self.shown_size(width, height, below)
             if min(size) > 0:  # else it is iconified
-                if notice is None:
+                cards = [] if notice is None else [notice_card(notice, size)]
+                if notice is None and self._told and not self._layer.shows_scenarios:
                     cards = self._cards_of(step, robot, size)
-                else:
-                    cards = [notice_card(notice, size)]
-                cards += self._layer.cards(size)
                 brightness = 1.0 if notice is None else DIMMED_BRIGHTNESS
-                self.paint(
-                    step.picture,
-                    cards,
-                    below,
-                    mirrored=self._layer.mirrored,
-                    brightness=brightness,
-                )
-        self._draw_over()
+                mirrored = self._layer.mirrored
+                self.paint(step.picture, cards, below, mirrored=mirrored, brightness=brightness)
+                unit = size[1] / PICTURE_HEIGHT
+                over = self._layer.cards(size, [card.box(unit) for card in cards])
+        self._draw_over(over)
 
     def _cards_of(self, step: Step, robot: RobotView, size: tuple[int, int]) -> list[Card]:
         """Return the cards over a step whose picture is shown in a size [px]."""
         assert step.picture is not None
         subjects = scaled_subjects(step, size[0] / step.picture.shape[1], self._layer.mirrored)
-        step = replace(step, subjects=(*subjects, *self._panel_areas(size)))
+        close_up = step.close_up
+        if close_up is not None and self._layer.mirrored:
+            close_up = np.ascontiguousarray(close_up[:, ::-1])
+        subjects = (*subjects, *self._panel_areas(size))
+        step = replace(step, subjects=subjects, close_up=close_up)
         self._virtual_robot.fit(virtual_robot_side(size[1]))
         return cards_over(step, robot, size, self._virtual_robot, self._layout)
 
@@ -220,10 +231,11 @@ class Window(WindowSurface):
             card.blend_over(picture)
         return picture
 
-    def _draw_over(self) -> None:
-        """Draw the panels over what was painted, and show both."""
+    def _draw_over(self, cards: Sequence[Card]) -> None:
+        """Draw the panels over what was painted, cards over the panels, and show all."""
         if self._panels is not None:
             self._panel_requests += self._panels.draw(self._strip_height)
+        self.paint_cards(cards)
         self.present()
 
     def _toggle_panels(self) -> None:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import Record, Seek
@@ -27,7 +28,8 @@ def pictures_of(window: Window, step: Step, robot: RobotView) -> NDArray[np.uint
 def main(session: str) -> None:
     """Show the first frame of a session, press every key, and quit."""
     robot = RobotView("ready", 0.5, "happy")
-    with open_source(session) as source, Window(source.size) as window:
+    store = PreferenceStore(None, {"welcomed": True})
+    with open_source(session) as source, Window(source.size, preferences=store) as window:
         intrinsics = intrinsics_for(source.intrinsics, source.size)
         playground = Playground("companion", intrinsics, context=window.context)
         step = playground.step(next(iter(source)))

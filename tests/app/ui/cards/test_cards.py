@@ -106,7 +106,7 @@ def test_cards_that_do_not_move_never_lie_over_each_other(a_step, monkeypatch):
             drawn.clear()
             later = replace(shown, frame=replace(shown.frame, timestamp=3.0 * number + SLIDING_S))
             overlay(picture, later, robot, virtual, layout)
-            assert len(drawn) == 3 + bool(said)
+            assert len(drawn) == 2 + bool(hint) + bool(said)
             for a, b in combinations(drawn, 2):
                 assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
             assert all(y >= 0 and bottom <= height for _, y, _, bottom in drawn)
