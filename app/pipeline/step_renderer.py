@@ -165,7 +165,8 @@ class StepRenderer:
         outside = not (0.0 <= x < width and 0.0 <= y < height)
         if outside or 2 * reach > MAX_CUBE_SHARE * height or reach < 1.0:
             return None
-        return x - reach, y - reach, x + reach, y + reach
+        # Pixel centres have integer coordinates, and pixels begin half a pixel before them.
+        return x - reach + 0.5, y - reach + 0.5, x + reach + 0.5, y + reach + 0.5
 
     def _view(self, step: Step, focus: Focus | None) -> CameraView:
         """Return the camera's picture with all that is known of the scene in it."""

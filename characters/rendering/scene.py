@@ -162,8 +162,8 @@ class CameraView:
     """Which depths are sharp; left out, all are. Only deferred shading blurs the others."""
 
     part: tuple[float, float, float, float] | None = None
-    """What of the frame is in the picture, magnified: left, top, right and bottom [px]; None for
-    all of it."""
+    """What of the frame is in the picture, magnified: columns and rows from the first to one after
+    the last, left, top, right, bottom [px]; None for all of it."""
 
 
 class Drawable(Protocol):

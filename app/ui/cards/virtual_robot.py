@@ -19,9 +19,10 @@ from cubeling.characters.rendering import CameraView, SceneCharacter, Stage
 MAX_SIDE_PX = 216
 """Largest picture that is drawn [px]; a larger one is scaled up, to spare software rendering."""
 
-SOFTWARE_INTERVAL_S = 0.099
-"""Shortest time between two pictures with software rendering [s]: ten a second, every third frame
-of a usual camera, since the character on the table needs the processor too."""
+SOFTWARE_INTERVAL_S, SOFTWARE_CHANGE_S = 0.165, 0.099
+"""Shortest time between two pictures with software rendering, and where the mood has another word
+[s]: every fifth and every third frame of a usual camera, since the character on the table needs the
+processor too."""
 
 YAW_RAD = -0.52
 """Heading of the robot, to the right of the camera, so that its tail is visible [rad]."""
@@ -49,7 +50,8 @@ class VirtualRobot:
         self._stage = Stage(context, (self._drawn_side, self._drawn_side))
         self._matrix, self._camera_from_table = _camera(self._drawn_side)
         software = is_software_renderer(str(context.info["GL_RENDERER"]))
-        self._interval = SOFTWARE_INTERVAL_S if software else 0.0
+        self._intervals = (SOFTWARE_INTERVAL_S, SOFTWARE_CHANGE_S) if software else (0.0, 0.0)
+        self._label = ""
         self._last: tuple[float, NDArray[np.uint8]] | None = None
         self._card: tuple[object, NDArray[np.uint8], Canvas] | None = None
         self._eye = np.asarray(np.linalg.inv(self._camera_from_table)[:3, 3], np.float64)
@@ -59,8 +61,11 @@ class VirtualRobot:
 
         With software rendering, the last picture is returned until `SOFTWARE_INTERVAL_S` is over.
         """
-        if self._last is not None and 0.0 <= target.timestamp - self._last[0] < self._interval:
+        label = target.emotion.label
+        interval = self._intervals[label != self._label]
+        if self._last is not None and 0.0 <= target.timestamp - self._last[0] < interval:
             return self._last[1]
+        self._label = label
         posed = self._animator.update(self.command(target))
         image = backdrop(self._drawn_side, target.emotion.valence)
         view = CameraView(image, self._matrix, np.zeros(0), self._camera_from_table)

@@ -15,6 +15,9 @@ STRIP_HEIGHT = 56.0
 TRACK_LEFT, TRACK_RIGHT = 214.0, 36.0
 """Distance of the track's ends from the sides of the strip."""
 
+LETTER_GAP = 0.6
+"""Distance between the letters of the time."""
+
 TRACK_Y = STRIP_HEIGHT / 2
 BUTTON_X = 36.0
 """Centers of the track and of the button that pauses."""
@@ -48,9 +51,12 @@ def _strip(position: Position, paused: bool, width: float, scale: float) -> Card
     canvas = _background(position.marks, position.length, width, scale).copy()
     _button(canvas, paused)
     shown = position.now if position.target is None else position.target
-    canvas.text(64, TRACK_Y + 6, clock_time(shown), 19, INK)
+    x = 64.0
+    for letter in clock_time(shown):  # each is drawn once: the time seldom is the same again
+        canvas.text(x, TRACK_Y + 6, letter, 19, INK)
+        x += text_width(letter, 19) + LETTER_GAP
     canvas.text(
-        64 + text_width(clock_time(shown), 19) + 6,
+        x + 6,
         TRACK_Y + 6,
         f"/ {clock_time(position.length)}",
         19,

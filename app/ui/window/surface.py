@@ -117,6 +117,8 @@ class WindowSurface:
             raise AppError(f"no window can be opened here: {self._error}")
         glfw.make_context_current(self._window)
         glfw.swap_interval(0)  # a camera's frame must not wait for the screen's
+        self._framebuffer_size: tuple[int, int] = glfw.get_framebuffer_size(self._window)
+        glfw.set_framebuffer_size_callback(self._window, self._on_size)
         glfw.set_key_callback(self._window, self._on_key)
         glfw.set_char_callback(self._window, self._on_character)
         glfw.set_cursor_pos_callback(self._window, self._on_pointer)
@@ -175,7 +177,7 @@ class WindowSurface:
         self._whole = width, height + below
         screen = self.context.detect_framebuffer(0)
         screen.use()
-        wide, high = glfw.get_framebuffer_size(self._window)
+        wide, high = self._framebuffer_size
         screen.viewport = (0, 0, wide, high)
         screen.clear(0.09, 0.10, 0.13)
         left, bottom, _, whole_height = self.picture_place(*self._whole)
@@ -198,7 +200,7 @@ class WindowSurface:
         screen = self.context.detect_framebuffer(0)
         screen.use()
         self._cards.draw(cards, screen, *self._card_origin)
-        screen.viewport = (0, 0, *glfw.get_framebuffer_size(self._window))
+        screen.viewport = (0, 0, *self._framebuffer_size)
 
     def shown_size(self, width: int, height: int, below: int = 0) -> tuple[int, int]:
         """Return width and height of a picture in the window [px], with so much room below it."""
@@ -286,7 +288,7 @@ class WindowSurface:
     def in_picture(self, x: float, y: float) -> tuple[float, float]:
         """Return the place in the picture [px] of one in the window [screen coordinates]."""
         left, _, shown_width, shown_height = self.picture_place(*self._whole)
-        wide, high = glfw.get_framebuffer_size(self._window)
+        wide, high = self._framebuffer_size
         columns, rows = glfw.get_window_size(self._window)  # in other units on a fine screen
         top = (high - shown_height) // 2
         scale = self._whole[0] / max(1, shown_width)
@@ -295,7 +297,7 @@ class WindowSurface:
 
     def picture_place(self, width: int, height: int) -> tuple[int, int, int, int]:
         """Return left, bottom, width and height of a picture in the window [px]."""
-        wide, high = glfw.get_framebuffer_size(self._window)
+        wide, high = self._framebuffer_size
         scale = min(wide / width, high / height)
         shown = (round(width * scale), round(height * scale))
         return (wide - shown[0]) // 2, (high - shown[1]) // 2, *shown
@@ -305,6 +307,10 @@ class WindowSurface:
         if name is not None and action in (glfw.PRESS, glfw.REPEAT):
             shift = bool(mods & glfw.MOD_SHIFT)
             self.handle_key(name, shift=shift, repeated=action == glfw.REPEAT)
+
+    def _on_size(self, _window: Any, wide: int, high: int) -> None:
+        # Kept, as each question to the display takes a tenth of a millisecond.
+        self._framebuffer_size = wide, high
 
     def _on_character(self, _window: Any, code: int) -> None:
         if chr(code) in TYPED_KEYS:

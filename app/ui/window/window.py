@@ -233,7 +233,7 @@ class Window(WindowSurface):
 
     def _draw_over(self, cards: Sequence[Card]) -> None:
         """Draw the panels over what was painted, cards over the panels, and show all."""
-        if self._panels is not None:
+        if self._panels is not None and self._panels.shown:
             self._panel_requests += self._panels.draw(self._strip_height)
         self.paint_cards(cards)
         self.present()

@@ -58,7 +58,7 @@ def test_a_frame_of_another_size_is_scaled_with_its_matrix(view):
 def test_a_part_of_the_frame_is_that_part_of_the_picture_magnified(view, distortion):
     whole, magnified = Undistorter((320, 180)), Undistorter((128, 128))
     smooth = replace(view, image=cv2.GaussianBlur(noise(3), (0, 0), 6), distortion=distortion)
-    part = replace(smooth, part=(99.5, 49.5, 163.5, 113.5))
+    part = replace(smooth, part=(100.0, 50.0, 164.0, 114.0))
     picture = magnified.undistort(part)
     expected = cv2.resize(whole.undistort(smooth)[50:114, 100:164], (128, 128))
     inner = np.s_[4:-4, 4:-4]
