@@ -151,12 +151,12 @@ class _Runner:
             self._preview()
         else:
             # A frame that is late is not drawn, and all else is as if it were.
-            drawn = session.pace is None or self._wait_for(frame, session.pace)
+            drawn = self._is_in_time(frame)
             acted = loop.asked_by_player
             session.wire.align(frame.timestamp - session.robot.clock())
             with defer_interrupts():
                 step = loop.step(frame, drawn=drawn)
-            self._shown_at = time.monotonic()
+            self._shown_at = time.monotonic() if drawn else self._shown_at
             self._gaps.watch_robot(loop.robot, frame.timestamp)
             if session.check_recording():
                 self._say(session.recording_problem)
@@ -168,8 +168,12 @@ class _Runner:
         if drawn:
             self._times.end_frame()
 
-    def _wait_for(self, frame: Frame, pace: Pace) -> bool:
-        """Wait until a frame is due; return False if it is too late."""
+    def _is_in_time(self, frame: Frame) -> bool:
+        """Wait until a frame is due; return False if it is too late to be drawn."""
+        pace = self._session.pace
+        if pace is None:
+            waited = time.monotonic() - self._shown_at
+            return not self._transport.is_behind or waited >= Pace.MAX_LEFT_OUT_S
         in_time = pace.wait(frame.timestamp)
         self._times.lap(WAITING)
         return in_time

@@ -7,10 +7,22 @@ from itertools import islice
 
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.robot import Closeable
-from cubeling.tracking import Frame, Health, LiveFrames, StoredFrames, Timeline, open_source
+from cubeling.tracking import (
+    BufferedFrames,
+    Frame,
+    Health,
+    LiveFrames,
+    StoredFrames,
+    Timeline,
+    open_source,
+)
 
 SCREEN_UPDATE_INTERVAL_S = 0.05
 """While no frame comes, the screen is updated at least this often."""
+
+
+MAX_WAITING_S = 1.0
+"""Frames of a camera wait for so long at most while a session is recorded."""
 
 
 class FrameFeed(Closeable):
@@ -45,6 +57,12 @@ class FrameFeed(Closeable):
         if self._decoder is not None:
             self._decoder.shutdown()
             self._decoder = None
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether newer frames of a camera wait already."""
+        source = self._session.source
+        return isinstance(source, BufferedFrames) and source.waiting > 0
 
     def close_gap(self) -> None:
         """Let the next live frame follow the last one: after a pause, or in another source."""
@@ -84,6 +102,10 @@ class FrameFeed(Closeable):
     def _next_live(self, source: LiveFrames) -> Frame | Health | None:
         if source.health.state == "closed":
             return None
+        if isinstance(source, BufferedFrames):
+            # A recording has every frame of the camera, as far as they are decided in time.
+            kept = 1 if self._session.recording is None else round(MAX_WAITING_S * source.rate)
+            source.max_waiting = 1 if self._close_gap else max(kept, 1)
         frame = source.wait(SCREEN_UPDATE_INTERVAL_S, self._session.options.patience_s)
         if frame is None:
             return source.health

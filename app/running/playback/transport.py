@@ -69,6 +69,11 @@ class Transport(Closeable):
         """That of the last frame [s]; None before the first one."""
         return None if self._feed.last is None else self._feed.last.timestamp
 
+    @property
+    def is_behind(self) -> bool:
+        """Whether newer frames of a camera wait already, which is recorded."""
+        return self._session.recording is not None and self._feed.is_behind
+
     def next(self) -> Frame | Health | None:
         """Return the next frame, a live source's health while it has none, or None at the end."""
         frame = self._feed.next()

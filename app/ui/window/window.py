@@ -86,7 +86,8 @@ class Window(WindowSurface):
         )
         self._layer.mirrored = began.mirror
         # A player in front of a camera is asked once what to play.
-        self._layer.shows_scenarios = not strip and not began.welcomed
+        self._chooses = not strip and not (monitor and monitor.options.keeps_scenario)
+        self._layer.shows_scenarios = self._chooses and not began.welcomed
         self._virtual_robot = VirtualRobot(
             self.context, virtual_robot_side(max(height, round(PICTURE_HEIGHT)))
         )
@@ -98,7 +99,7 @@ class Window(WindowSurface):
         self._shown: tuple[Step, RobotView] | None = None
         self._pointer = (0.0, 0.0)
         self._titled = ""
-        self._strip, self._told = strip, True
+        self._told = True
         self._hint_reader = HintReader()
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
@@ -151,7 +152,7 @@ class Window(WindowSurface):
             window_size=self.chosen_size,
             full_screen=self.fills_screen,
             mirror=self._layer.mirrored,
-            welcomed=self._preferences.now.welcomed or not self._strip,
+            welcomed=self._preferences.now.welcomed or self._chooses,
         )
         if self._panels is not None:
             self._panels.close()

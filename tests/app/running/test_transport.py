@@ -12,6 +12,7 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running import runner
 from cubeling.app.running.opening import open_session
+from cubeling.app.running.playback.frame_feed import MAX_WAITING_S
 from cubeling.app.running.playback.saved_states import FIRST_INTERVAL_S
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, messages, session_info
@@ -279,3 +280,34 @@ def test_a_pause_of_a_live_session_leaves_no_gap_and_keeps_the_robot(short_sessi
         "paused",
         "resumed",
     ]
+
+
+class HastyCamera(LiveSession):
+    """A live camera that has newer frames waiting, but for every fourth one."""
+
+    max_waiting = 1
+
+    def __init__(self, session):
+        super().__init__(session)
+        self.kept: list[int] = []
+
+    def wait(self, timeout, patience=None):
+        self.kept.append(self.max_waiting)
+        return super().wait(timeout, patience)
+
+    @property
+    def waiting(self):
+        return len(self.kept) % 4
+
+
+def test_a_recording_has_every_frame_of_a_camera_that_is_too_fast(short_session, tmp_path):
+    camera, player, path = HastyCamera(short_session), Player(), tmp_path / "out.mcap"
+    options = SessionOptions(
+        scenario="companion", source="camera:0", robot="none", record=path, pictures=False
+    )
+    with camera, open_session(options, source=camera, screen=player) as session:
+        summary = run(session)
+    assert set(camera.kept) == {round(MAX_WAITING_S * camera.rate)}
+    assert session_info(path).frames == summary.frames == 20
+    assert 4 <= len(player.steps) <= 8
+    assert session_parts.check(path, replace(options, source=str(path), record=None)).identical
