@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.errors import AppError
 from cubeling.app.pipeline.registry import scenario_summary
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width, wrap_text
 from cubeling.app.ui.palette import INK, PAPER, QUIET, RULE, between
@@ -19,6 +20,9 @@ HELP = "Press a number, or click  ·  Esc closes  ·  0 brings it back"
 SIDE, GAP, TOP, BOTTOM = 28.0, 20.0, 74.0, 52.0
 TEXT_HEIGHT, SUMMARY_SIZE, SUMMARY_LINE = 84.0, 15.0, 20.0
 """Height of the text under a picture, size of a summary's letters, and distance of its lines."""
+
+MAX_LINES = 2
+"""Lines of a summary that are shown."""
 
 FEW, WIDE_TILE, TILE = 4, 300.0, 224.0
 """So many scenarios are shown with wide pictures in two columns, more in three."""
@@ -85,13 +89,23 @@ def _draw(scenarios: tuple[str, ...], present: str, width: float, scale: float) 
         canvas.text(x + 24, y + 31, f"{place + 1}", 20, PAPER, "middle")
         y += tile * 9 / 16
         canvas.text(x + 4, y + 25, name, 20, ACCENT if name == present else INK)
-        lines = wrap_text(scenario_summary(name), tile - 8, SUMMARY_SIZE)
-        for number, line in enumerate(lines[:2]):
+        lines = wrap_text(_summary(name), tile - 8, SUMMARY_SIZE)
+        if len(lines) > MAX_LINES:
+            lines[MAX_LINES - 1 :] = [f"{lines[MAX_LINES - 1]} …"]
+        for number, line in enumerate(lines):
             baseline = y + 46 + number * SUMMARY_LINE
             canvas.text(x + 4, baseline, line, SUMMARY_SIZE, QUIET)
     size = min(16.0, 16.0 * (wide - 2 * SIDE) / text_width(HELP, 16.0))
     canvas.text(wide / 2, high - 20, HELP, size, QUIET, "middle")
     return canvas.card(left, top, 0.97)
+
+
+def _summary(name: str) -> str:
+    """Return what a scenario is; that of another package may be broken."""
+    try:
+        return scenario_summary(name)
+    except AppError:
+        return "it cannot be used: choose it to see why"
 
 
 def _picture(name: str, width: int) -> NDArray[np.uint8]:

@@ -279,6 +279,7 @@ def test_each_scenario_has_a_place_of_its_own_on_the_card(count, width):
     places = np.mgrid[0:720:8, 0 : int(width) : 8].reshape(2, -1).T
     found = {card.click(x, y, width) for y, x in places.tolist()}
     assert found == {None, *range(1, count + 1)}
+    card.draw("scenario0", width, 1.0)  # those of broken packages, too
 
 
 def test_the_corner_has_buttons_for_keys_and_menu(desk):
