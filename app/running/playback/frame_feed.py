@@ -52,7 +52,7 @@ class FrameFeed(Closeable):
         return found
 
     def close(self) -> None:
-        """End the thread."""
+        """Wait for the frame that is being decoded, and end its thread."""
         self._wait()
         if self._decoder is not None:
             self._decoder.shutdown()
