@@ -167,6 +167,8 @@ class _Runner:
         self._times.lap("other")
         if drawn:
             self._times.end_frame()
+        else:  # the times are those of the frames that are shown
+            self._times.drop_frame()
 
     def _is_in_time(self, frame: Frame) -> bool:
         """Wait until a frame is due; return False if it is too late to be drawn."""
