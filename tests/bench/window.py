@@ -75,7 +75,7 @@ def measure(scenario: str, seconds: float, quality: str, every: bool) -> dict[st
             began[1:] = [(time.perf_counter(), *_cpu(), len(parts) + 1)] if began else []
 
         summary = run(session, progress)
-        renderer = session.screen.context.info["GL_RENDERER"]
+        renderer = window.context.info["GL_RENDERER"]
     start, end = began[0], began[-1]
     counted_parts = parts[start[3] : end[3]]
     names = dict.fromkeys(name for each in counted_parts for name in each)
