@@ -59,6 +59,9 @@ class Preferences:
     muted: bool = False
     """Whether sounds and voices are off, whatever the volume."""
 
+    welcomed: bool = False
+    """Whether the card with all scenarios was seen, which a camera's first session begins with."""
+
     def __post_init__(self) -> None:
         if not 0.0 <= self.volume <= 1.0:
             raise AppError(f"the volume must be from 0 to 1, not {self.volume:g}")

@@ -28,6 +28,7 @@ from cubeling.app.session.bundled import bundled_session
 from cubeling.app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from cubeling.app.ui.calibration.coach_lines import write_coverage
 from cubeling.app.ui.calibration.session import Advice, CalibrationSession, Picture
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
 from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
@@ -55,6 +56,15 @@ MOMENTS_S: dict[str, dict[str, float]] = {
     "reach": {"stretch": 2.5, "give": 12.3},
 }
 """For every recording, the pictures taken from it and their times [s]."""
+
+TILES = Path(__file__).parent.parent / "app" / "ui" / "playback" / "scenario_pictures"
+"""Where the window finds the pictures of the scenarios."""
+
+TILE_MOMENTS_S = {"follow": 6.2, "sketch": 22.6, "companion": 12.2, "reach": 12.3}
+"""When each of them is taken [s]."""
+
+TILE_SIZE, TILE_SETTLING_S = (480, 270), 0.5
+"""Width and height of them [px], and for how long light is measured before [s]."""
 
 
 def draw(scenario: str, moments: dict[str, float]) -> None:
@@ -88,14 +98,48 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
             Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
 
 
+def draw_tile(scenario: str, moment: float) -> None:
+    """Save a small picture of a scenario without cards, around character and cube."""
+    with ExitStack() as closing:
+        source = closing.enter_context(open_source(str(bundled_session(scenario))))
+        context = create_context()
+        closing.callback(context.release)
+        intrinsics = intrinsics_for(source.intrinsics, source.size)
+        playground = Playground(scenario, intrinsics, context=context)
+        closing.callback(playground.close)
+        steps = (
+            playground.step(frame, drawn=frame.timestamp >= moment - TILE_SETTLING_S)
+            for frame in source
+        )
+        step = next(each for each in steps if each.frame.timestamp >= moment)
+    assert step.picture is not None
+    height, width = step.picture.shape[:2]
+    left, top, right, bottom = np.array(step.subjects).T
+    x, y = (left.min() + right.max()) / 2, (top.min() + bottom.max()) / 2
+    wide = min(max(right.max() - left.min(), (bottom.max() - top.min()) * 16 / 9) * 1.1, width)
+    high = wide * 9 / 16
+    x0 = round(min(max(x - wide / 2, 0), width - wide))
+    y0 = round(min(max(y - high / 2, 0), height - high))
+    part = step.picture[y0 : y0 + round(high), x0 : x0 + round(wide)]
+    path = TILES / f"{scenario}.jpg"
+    small = cv2.resize(part, TILE_SIZE, interpolation=cv2.INTER_AREA)
+    cv2.imwrite(str(path), small, (cv2.IMWRITE_JPEG_QUALITY, 88))
+    Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
+
+
 def in_window(picture: Picture, scenario: str, now: float, length: float) -> Picture:
     """Return a picture of a replay as the window shows it, paused."""
-    layer = PlaybackLayer((scenario,), Path(), {})
+    layer = PlaybackLayer((scenario,), Path(), {}, lambda: None)
     with SessionFile(bundled_session(scenario)) as session:
         marks = tuple(PlaybackMark(time, event) for time, event in session.events)
     position = Position(now, length, 0.0, length, marks=marks)
     layer.report(SessionStatus(scenario, paused=True, position=position))
-    return layer.draw(picture)
+    height, width = picture.shape[:2]
+    strip = round(layer.strip_height * height / PICTURE_HEIGHT)
+    shown = np.vstack([picture, np.zeros((strip, width, 3), np.uint8)])
+    for card in layer.cards((width, height)):
+        card.blend_over(shown)
+    return shown
 
 
 def draw_sheet(name: str) -> None:

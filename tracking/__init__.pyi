@@ -28,6 +28,7 @@ from cubeling.tracking.pose_table import PoseTable as PoseTable, track_video as 
 from cubeling.tracking.refinement.lens_estimate import LensEstimate as LensEstimate
 from cubeling.tracking.sources import open_source as open_source
 from cubeling.tracking.sources.base import (
+    BufferedFrames as BufferedFrames,
     FrameSource as FrameSource,
     LiveFrames as LiveFrames,
     StoredFrames as StoredFrames,

@@ -30,6 +30,10 @@ class FrameTimes:
         self._frame[part] = self._frame.get(part, 0.0) + now - self._last
         self._last = now
 
+    def so_far(self, without: str) -> float:
+        """Return the time that the present frame took until the last lap, without a part [s]."""
+        return sum(seconds for part, seconds in self._frame.items() if part != without)
+
     def end_frame(self) -> None:
         """Keep the times of the frame, and forget those before the span."""
         self._frames.append((self._last, self._frame))

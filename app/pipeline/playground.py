@@ -239,7 +239,8 @@ class Playground:
 
     def checkpoint(self) -> Checkpoint:
         """Return a copy of the state after the last frame, for `restore`; see its errors."""
-        return Checkpoint({name: getattr(self, name) for name in STATE_NAMES})
+        state = {name: getattr(self, name) for name in STATE_NAMES}
+        return Checkpoint({**state, "intrinsics": self.intrinsics})
 
     def restore(self, checkpoint: Checkpoint) -> None:
         """Go on as after the frame at which a checkpoint was made.
@@ -247,7 +248,9 @@ class Playground:
         The scenario, the cube and the character must be the same as then. What the drawing follows
         is measured again: the appearance of a later time is not that of this one.
         """
-        for name, value in checkpoint.content().items():
+        content = dict(checkpoint.content())
+        self.sight.intrinsics = content.pop("intrinsics")
+        for name, value in content.items():
             setattr(self, name, value)
         self.sight.look_through(self._tracker.intrinsics)
         self.sight.begin(self.cube)
@@ -267,6 +270,7 @@ class Playground:
         replay: ReplayInputs | None = None,
         *,
         drawn: bool = True,
+        measured: bool | None = None,
     ) -> Step:
         """Process one frame.
 
@@ -279,7 +283,9 @@ class Playground:
         replay
             Recorded messages to use instead of computing them; None to compute all.
         drawn
-            Whether to measure the picture's appearance and to draw it; all else is the same.
+            Whether to draw the picture; all else is the same.
+        measured
+            Whether to measure the picture's appearance; None to do so if it is drawn.
 
         Returns
         -------
@@ -296,7 +302,7 @@ class Playground:
         controls = replay.controls or self.gesture(state)
         self._lap("gestures")
         appearance = replay.appearance
-        if appearance is None and drawn:
+        if appearance is None and (drawn if measured is None else measured):
             appearance = self.sight.see(frame, state, controls)
         self._lap("appearance")
         inputs = inputs or Inputs()
@@ -330,7 +336,7 @@ class Playground:
             tracker_error=self._tracker_error,
         )
         if drawn:
-            step = replace(step, picture=self.draw(step))
+            step = self._drawn(step)
         self._lap("drawing")
         return step
 
@@ -427,8 +433,12 @@ class Playground:
     def with_picture(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
         appearance = step.appearance or self.sight.see(step.frame, step.state, step.controls)
-        step = replace(step, appearance=appearance)
-        return replace(step, picture=self.draw(step))
+        return self._drawn(replace(step, appearance=appearance))
+
+    def _drawn(self, step: Step) -> Step:
+        body = PosedBody(self.character, self._parts, step.posed)
+        close_up = self._renderer.close_up(step, body, self._complexion.blood)
+        return replace(step, picture=self.draw(step), close_up=close_up)
 
     def close(self) -> None:
         """Release the graphics; a second call does nothing."""

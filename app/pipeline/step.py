@@ -40,6 +40,9 @@ class Step:
     """The camera's picture with the character on the table, (height, width, 3) BGR;
     None without a graphics context."""
 
+    close_up: NDArray[np.uint8] | None = None
+    """A look into the open cube from near by, (side, side, 3) BGR; None while it is closed."""
+
     subjects: tuple[Rect, ...] = ()
     """Where the cube with the hand, and the character are in the picture [px]."""
 

@@ -30,6 +30,14 @@ FOCUSING_S = 0.5
 """Time constant with which the camera's focus follows the cube [s]."""
 
 
+CLOSE_UP_PX, CLOSE_UP_EDGES = 256, 0.95
+"""Side of the look into the cube from near by, and how far around the cube's centre it reaches, in
+edges of it."""
+
+MAX_CUBE_SHARE = 0.5
+"""A cube that fills more of the picture's height is seen well enough without it."""
+
+
 class FocusDistance:
     """Follows the distance of the cube, on which a camera focuses."""
 
@@ -70,7 +78,8 @@ class StepRenderer:
         self, context: "moderngl.Context | None", intrinsics: Intrinsics, realism: Sequence[str]
     ) -> None:
         self._context, self._intrinsics, self._realism = context, intrinsics, tuple(realism)
-        self._stage = None if context is None else _stage_of(context, intrinsics)
+        self._stage = None if context is None else _stage(context, intrinsics.size)
+        self._close: Stage | None = None
         self._quality = FULL
         self._edge, self._focus_distance = 0.0, FocusDistance()
 
@@ -84,7 +93,7 @@ class StepRenderer:
         """Take another camera; `play` must follow."""
         if self._context is not None and intrinsics.size != self._intrinsics.size:
             self.close()
-            self._stage = _stage_of(self._context, intrinsics)
+            self._stage = _stage(self._context, intrinsics.size)
             self._stage.quality = self._quality
         self._intrinsics = intrinsics
 
@@ -126,6 +135,38 @@ class StepRenderer:
         characters = self._characters(step.outcome, body, step.interior, blood) if seen else []
         floor = step.outcome.floor if seen else ()
         return self._stage.draw(self._view(step, focus), characters, floor)
+
+    def close_up(self, step: Step, body: PosedBody, blood: float) -> NDArray[np.uint8] | None:
+        """Draw a look into the open cube; return None if none is seen, or if it fills the picture.
+
+        The camera stays where it is: what is in the cube is seen in the same way, only larger.
+        """
+        interior = step.interior
+        if self._context is None or interior is None or interior.box is None:
+            return None
+        part = self._part_around(interior.box)
+        if interior.resident is None or part is None:
+            return None
+        if self._close is None:
+            self._close = _stage(self._context, (CLOSE_UP_PX, CLOSE_UP_PX))
+        self._close.quality = self._quality
+        # It is drawn sharper than the camera sees, as one looks more closely.
+        view = replace(self._view(step, None), part=part, softness=None)
+        return self._close.draw(view, self._characters(step.outcome, body, interior, blood))
+
+    def _part_around(self, box: Box) -> tuple[float, float, float, float] | None:
+        """Return the square of the frame around a cube [px]; None if that is not worth it."""
+        matrix, center = self._intrinsics.matrix, box.camera_from_box[:3, 3]
+        if center[2] <= box.edge:
+            return None
+        reach = CLOSE_UP_EDGES * box.edge * float(matrix[1, 1] / center[2])
+        x, y = (matrix[:2] @ (center / center[2])).tolist()
+        width, height = self._intrinsics.size
+        outside = not (0.0 <= x < width and 0.0 <= y < height)
+        if outside or 2 * reach > MAX_CUBE_SHARE * height or reach < 1.0:
+            return None
+        # Pixel centres have integer coordinates, and pixels begin half a pixel before them.
+        return x - reach + 0.5, y - reach + 0.5, x + reach + 0.5, y + reach + 0.5
 
     def _view(self, step: Step, focus: Focus | None) -> CameraView:
         """Return the camera's picture with all that is known of the scene in it."""
@@ -171,10 +212,13 @@ class StepRenderer:
         if self._stage is not None:
             self._stage.release()
             self._stage = None
+        if self._close is not None:
+            self._close.release()
+            self._close = None
 
 
-def _stage_of(context: "moderngl.Context", intrinsics: Intrinsics) -> "Stage":
-    """Return a stage for the pictures of a camera; the renderer is loaded only where it draws."""
+def _stage(context: "moderngl.Context", size: tuple[int, int]) -> "Stage":
+    """Return a stage for pictures; the renderer is loaded only where it draws."""
     from cubeling.characters.rendering import Stage
 
-    return Stage(context, intrinsics.size)
+    return Stage(context, size)

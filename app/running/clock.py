@@ -41,14 +41,15 @@ class Pace:
     Parameters
     ----------
     max_late
-        A frame that is due for longer than this [s] is left out, as by a live camera; infinite to
-        take every frame, in slow motion on a slow computer.
+        A frame that is due for longer than this [s] is not drawn; infinite to draw every frame, in
+        slow motion on a slow computer.
     clock, sleep
         The time [s], and what waits for a number of seconds.
     """
 
     MAX_LEFT_OUT_S = 0.5
-    """Frames are left out for this time at most before one is shown, however slow the computer."""
+    """Frames are not drawn for this time at most before one is, however slow the computer. If that
+    does not help, the recording plays slower."""
 
     def __init__(
         self,
@@ -57,7 +58,7 @@ class Pace:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self.max_late = max_late
-        """From when on a frame is left out [s]."""
+        """From when on a frame is not drawn [s]."""
         self._clock, self._sleep = clock, sleep
         self._offset: float | None = None
         self._leaving_out_since: float | None = None
@@ -67,7 +68,7 @@ class Pace:
         self._offset = self._leaving_out_since = None
 
     def wait(self, timestamp: float) -> bool:
-        """Wait until a frame is due; return False if it is too late and is to be left out."""
+        """Wait until a frame is due; return False if it is too late and is not to be drawn."""
         now = self._clock()
         if self._offset is None:
             self._offset = now - timestamp
@@ -79,5 +80,6 @@ class Pace:
                 self._leaving_out_since = now
             if now - self._leaving_out_since < self.MAX_LEFT_OUT_S:
                 return False
+            self._offset += late
         self._leaving_out_since = None
         return True

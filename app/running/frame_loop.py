@@ -1,6 +1,5 @@
 """Processing the frames of a session: each is tracked, drawn, shown and recorded."""
 
-import time
 from dataclasses import replace
 
 from cubeling.app.pipeline.scenario import Inputs
@@ -11,6 +10,23 @@ from cubeling.app.running.quality_control import AUTO_QUALITY, QualityControl
 from cubeling.app.running.summary import Summary
 from cubeling.characters.rendering import QUALITIES
 from cubeling.tracking import Frame
+
+WAITING = "waiting"
+"""The part of a frame's time in which nothing is done for it."""
+
+
+def both_asked(first: Inputs, then: Inputs) -> Inputs:
+    """Return what a player asked for before and after, as if it had been at the same time.
+
+    >>> both_asked(Inputs(clear=True, inside=True), Inputs(scenario="reach", inside=True))
+    Inputs(clear=True, scenario='reach', line=None, inside=False)
+    """
+    return Inputs(
+        clear=first.clear or then.clear,
+        scenario=then.scenario or first.scenario,
+        line=then.line or first.line,
+        inside=first.inside != then.inside,
+    )
 
 
 class FrameLoop:
@@ -35,10 +51,9 @@ class FrameLoop:
             software = session.playground.draws_in_software
             self._quality = QualityControl(session.source.rate, software)
 
-    def step(self, frame: Frame) -> Step:
-        """Process one frame and show it."""
+    def step(self, frame: Frame, *, drawn: bool = True) -> Step:
+        """Process one frame and show it; without drawing it, it is only not seen."""
         session, lap = self._session, self._session.monitor.times.lap
-        began = time.perf_counter()
         self._read_recorded(frame)
         asked = Inputs(clear=True) if self._take_start_over() else self._inputs
         inside = asked.inside != self._take_inside()
@@ -47,8 +62,11 @@ class FrameLoop:
         if session.recording is not None:
             frame = session.recording.encode(frame)
             lap("recording")
-        step = session.playground.step(frame, inputs, self._replay)
-        self._show(step, inputs, began)
+        # A replay of a recording measures the appearance of all frames, in their order.
+        measured = drawn or session.recording is not None
+        step = session.playground.step(frame, inputs, self._replay, drawn=drawn, measured=measured)
+        self._inputs = Inputs()
+        self._show(step, inputs, drawn)
         return step
 
     def skip(self, frame: Frame) -> Step:
@@ -74,9 +92,7 @@ class FrameLoop:
     def show_skipped(self) -> None:
         """Show the last frame that was skipped, if none was shown after it."""
         if self._hidden is not None:
-            self._show(
-                self._session.playground.with_picture(self._hidden), Inputs(), time.perf_counter()
-            )
+            self._show(self._session.playground.with_picture(self._hidden), Inputs())
 
     def leave_out(self, frame: Frame) -> None:
         """Process nothing; what the player asked or a character says here, happens in the next."""
@@ -87,7 +103,7 @@ class FrameLoop:
         """Whether the player asked something of the scenario in the frame that was shown last."""
         return self._inputs != Inputs()
 
-    def _show(self, step: Step, inputs: Inputs, began: float) -> None:
+    def _show(self, step: Step, inputs: Inputs, drawn: bool = True) -> None:
         session, lap = self._session, self._session.monitor.times.lap
         follows = self._hidden is None and step.frame.index >= self._shown_index
         self._hidden, self._shown_index = None, step.frame.index
@@ -96,7 +112,6 @@ class FrameLoop:
         session.robot.feel(step.emotion)
         if session.player is not None:
             session.player.publish(step.command, step.emotion)
-        seconds = time.perf_counter() - began
         lap("robot")
         if session.recording is not None:
             session.recording.write(step, inputs)
@@ -105,7 +120,8 @@ class FrameLoop:
         session.monitor.update(step, view, session.playground)
         if step.tracker_error and not self._summary.failed_frames:
             session.screen.notify("The tracker made an error: this frame is lost, the game goes on")
-        self._inputs = session.screen.show(step, view)
+        if drawn:
+            self._inputs = both_asked(self._inputs, session.screen.show(step, view))
         session.speaker.hear(step)
         lap("showing")
         if session.sound is not None:
@@ -114,9 +130,10 @@ class FrameLoop:
             character = session.playground.character
             session.sound.play(step, character, started_over=inputs.clear)
             lap("sound")
+        seconds = session.monitor.times.so_far(WAITING) if drawn else None
         self._summary.add(step, view, seconds, follows=follows)
-        if self._quality is not None:
-            session.playground.quality = self._quality.update(time.perf_counter() - began)
+        if self._quality is not None and seconds is not None:
+            session.playground.quality = self._quality.update(seconds)
 
     def _take_start_over(self) -> bool:
         start_over, self._start_over = self._start_over, False

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from cubeling.app.interrupts import defer_interrupts
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.clock import Pace
-from cubeling.app.running.frame_loop import FrameLoop
+from cubeling.app.running.frame_loop import WAITING, FrameLoop
 from cubeling.app.running.gap_watch import GapWatch, Say
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.playback.player_controls import PlayerControls
@@ -103,11 +103,12 @@ class _Runner:
     def close(self) -> None:
         self._gaps.close()
         self._controls.close()
+        self._transport.close()
 
     def _advance(self) -> bool:
         """Take the next frame; return False at the end of the session."""
         found = self._read()
-        self._times.lap("waiting" if self._session.source.live else "capture")
+        self._times.lap(WAITING if self._session.source.live else "capture")
         if isinstance(found, Frame):
             self._gaps.camera_back(found.timestamp)
             self._process(found)
@@ -140,7 +141,7 @@ class _Runner:
         if not session.source.live and session.pace is None:  # then the frames drive the clock
             self._start = frame.timestamp if self._start is None else self._start
             session.clock.drive(frame.timestamp - self._start)
-        by_player = False
+        acted, drawn, scenario = False, True, session.playground.scenario
         if not self._transport.is_shown(frame):
             if session.recording is not None:  # which begins with the first frame that is shown
                 loop.leave_out(frame)
@@ -148,29 +149,35 @@ class _Runner:
             with defer_interrupts():
                 step = loop.skip(frame)
             self._preview()
-        elif session.pace is not None and not self._wait_for(frame, session.pace):
-            loop.leave_out(frame)
-            self._summary.left_out += 1
-            return
         else:
-            by_player = loop.asked_by_player
+            # A frame that is late is not drawn, and all else is as if it were.
+            drawn = self._is_in_time(frame)
+            acted = loop.asked_by_player
             session.wire.align(frame.timestamp - session.robot.clock())
             with defer_interrupts():
-                step = loop.step(frame)
-            self._shown_at = time.monotonic()
+                step = loop.step(frame, drawn=drawn)
+            self._shown_at = time.monotonic() if drawn else self._shown_at
             self._gaps.watch_robot(loop.robot, frame.timestamp)
             if session.check_recording():
                 self._say(session.recording_problem)
-        self._transport.save_state(by_player)
+        exchanged = session.playground.scenario is not scenario
+        self._transport.save_state(acted=acted, exchanged=exchanged)
         if self._progress is not None:
             self._progress(step)
         self._times.lap("other")
-        self._times.end_frame()
+        if drawn:
+            self._times.end_frame()
+        else:  # the times are those of the frames that are shown
+            self._times.drop_frame()
 
-    def _wait_for(self, frame: Frame, pace: Pace) -> bool:
-        """Wait until a frame is due; return False if it is too late."""
+    def _is_in_time(self, frame: Frame) -> bool:
+        """Wait until a frame is due; return False if it is too late to be drawn."""
+        pace = self._session.pace
+        if pace is None:
+            waited = time.monotonic() - self._shown_at
+            return not self._transport.is_behind or waited >= Pace.MAX_LEFT_OUT_S
         in_time = pace.wait(frame.timestamp)
-        self._times.lap("waiting")
+        self._times.lap(WAITING)
         return in_time
 
     def _preview(self) -> None:

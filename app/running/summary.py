@@ -73,7 +73,7 @@ class Summary:
     """Number of frames so far, those without a cube too."""
 
     left_out: int = 0
-    """Frames of a recording that were left out, as the computer was too slow for all."""
+    """Frames of a recording that were not drawn, as the computer was too slow for all."""
 
     tracked_frames: int = 0
     """Frames in which the cube was found."""
@@ -97,7 +97,7 @@ class Summary:
     """The valence that the robot reports, −1…1."""
 
     frame_seconds: EvenSamples[float] = field(default_factory=EvenSamples)
-    """Processing times of frames, from the camera's picture to the finished one [s]."""
+    """Processing times of the frames that were shown, from decoding to the glass [s]."""
 
     lost: RobotError | TrackingError | None = None
     """Why the robot could not be reached at the end, or why the camera stopped; None if neither."""
@@ -126,8 +126,14 @@ class Summary:
     last: float = 0.0
     """Timestamp of the last frame [s]."""
 
-    def add(self, step: Step, robot: RobotView, seconds: float, *, follows: bool = True) -> None:
-        """Add one frame and its processing time [s]; `follows` is false after a jump."""
+    def add(
+        self, step: Step, robot: RobotView, seconds: float | None, *, follows: bool = True
+    ) -> None:
+        """Add one frame and its processing time [s]; `follows` is false after a jump.
+
+        The time is None for a frame that was not drawn.
+        """
+        self.left_out += seconds is None
         self.hopped = self.hopped or step.outcome.icon == "hop"
         if self.frames and follows:
             self.duration += step.frame.timestamp - self.last
@@ -143,7 +149,8 @@ class Summary:
         if not self.labels or self.labels[-1][1] != robot.label:
             self.labels.append((now, robot.label))
         self.valences.add(robot.mood)
-        self.frame_seconds.add(seconds)
+        if seconds is not None:
+            self.frame_seconds.add(seconds)
 
     def check(self) -> None:
         """Raise what went wrong with robot or camera; call it once everything is closed."""
@@ -171,7 +178,7 @@ class Summary:
         table.add_row("played", f"{quantity(self.frames, 'frame')}, {duration:.1f} s")
         if self.left_out:
             left_out = quantity(self.left_out, "frame")
-            table.add_row("left out", f"{left_out}, to keep up with the recording")
+            table.add_row("not drawn", f"{left_out}, to keep up with the recording")
         if len(self.scenarios) > 1:
             table.add_row("scenarios", _timeline(self.scenarios, duration))
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")

@@ -49,6 +49,12 @@ class Card:
     transparency: NDArray[np.float32]
     """1 − `opacity`, (height, width)."""
 
+    def box(self, scale: float) -> tuple[float, float, float, float]:
+        """Return left, top, right and bottom in units of a canvas of a scale."""
+        height, width = self.opacity.shape
+        left, top = self.x / scale, self.y / scale
+        return left, top, left + width / scale, top + height / scale
+
     def blend_over(self, picture: NDArray[np.uint8]) -> None:
         """Blend the card over a picture (H, W, 3), in place; it is clipped to the picture."""
         height, width = self.opacity.shape
@@ -79,6 +85,12 @@ class Canvas:
         radius = round(min(18 * self.scale, height / 2))
         masks = _blend_masks(width, height, radius, round(255 * opacity))
         return Card(round(x * self.scale), round(y * self.scale), self.color, *masks)
+
+    def strip(self, y: float) -> Card:
+        """Return it as a card without round corners, at the left edge and at `y`."""
+        height, width = self.color.shape[:2]
+        masks = _plain_masks(width, height)
+        return Card(0, round(y * self.scale), self.color, *masks)
 
     def copy(self) -> "Canvas":
         """Return a copy to draw on; what never changes is drawn once, on the original."""
@@ -209,3 +221,9 @@ def _blend_masks(
     """Return the opacity of a card and its complement, each (height, width)."""
     opacity = rounded_rectangle(width, height, radius, value).astype(np.float32) / 255.0
     return opacity, 1.0 - opacity
+
+
+@lru_cache(maxsize=4)
+def _plain_masks(width: int, height: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    opacity = np.ones((height, width), np.float32)
+    return opacity, np.zeros_like(opacity)

@@ -161,6 +161,10 @@ class CameraView:
     focus: Focus | None = None
     """Which depths are sharp; left out, all are. Only deferred shading blurs the others."""
 
+    part: tuple[float, float, float, float] | None = None
+    """What of the frame is in the picture, magnified: columns and rows from the first to one after
+    the last, left, top, right, bottom [px]; None for all of it."""
+
 
 class Drawable(Protocol):
     """The part of a character that drawing needs."""

@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import PurePath
 
 from cubeling.tracking.errors import TrackingError
-from cubeling.tracking.sources.base import FrameSource, LiveFrames, StoredFrames
+from cubeling.tracking.sources.base import BufferedFrames, FrameSource, LiveFrames, StoredFrames
 from cubeling.tracking.sources.device import Clock, Health
 
 SCHEME_MODULES = {
@@ -62,4 +62,4 @@ def open_source(
     return source
 
 
-__all__ = ["FrameSource", "Health", "LiveFrames", "StoredFrames", "open_source"]
+__all__ = ["BufferedFrames", "FrameSource", "Health", "LiveFrames", "StoredFrames", "open_source"]

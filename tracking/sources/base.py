@@ -93,6 +93,20 @@ class LiveFrames(FrameSource, Protocol):
         ...
 
 
+@runtime_checkable
+class BufferedFrames(LiveFrames, Protocol):
+    """A live source that can keep frames for a caller that is slower for a while."""
+
+    max_waiting: int
+    """How many frames are kept until they are waited for; of more, the oldest are dropped. 1, as it
+    is at first, for the newest only."""
+
+    @property
+    def waiting(self) -> int:
+        """How many frames are kept now: with any, the last one is not the newest."""
+        ...
+
+
 class StoredFrames(FrameSource):
     """Frames that are decoded on request from a file; the first one is decoded while opening."""
 

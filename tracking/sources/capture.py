@@ -1,6 +1,7 @@
 """The capture thread: it opens a device, reads it, and opens it again after a loss."""
 
 import threading
+from collections import deque
 from collections.abc import Callable
 from contextlib import closing
 
@@ -50,7 +51,7 @@ class _DeviceReader:
 
 
 class CaptureThread:
-    """Reads a device in a thread and keeps the newest image.
+    """Reads a device in a thread and keeps the newest image, or the newest ones.
 
     The thread reopens the device after a loss if an image ever arrived. The same image again and
     again for `frozen_after` [s] is a loss, too. If the driver does not
@@ -65,7 +66,7 @@ class CaptureThread:
         self._frozen_after = frozen_after
         self._changed = threading.Condition()
         self._stopped = threading.Event()
-        self._newest: CapturedImage | None = None
+        self._waiting: deque[CapturedImage] = deque(maxlen=1)
         self._last: Image | bytes | None = None
         self.exposure_clock, self._rejected = ExposureClock(), ""
         # Never decreases: each is a thread and a device that the program has lost.
@@ -83,16 +84,32 @@ class CaptureThread:
         self.gauge, self.dropped, self.gaps = QueueGauge(self.rate), 0, 0
         self._start()
 
-    def newest(self, timeout: float) -> CapturedImage | None:
+    @property
+    def waiting(self) -> int:
+        """How many images wait to be fetched."""
+        return len(self._waiting)
+
+    @property
+    def max_waiting(self) -> int:
+        """How many images are kept until they are fetched; of more, the oldest are dropped."""
+        return self._waiting.maxlen or 1
+
+    @max_waiting.setter
+    def max_waiting(self, count: int) -> None:
+        if count != self.max_waiting:
+            with self._changed:
+                self.dropped += max(len(self._waiting) - count, 0)
+                self._waiting = deque(self._waiting, maxlen=count)
+
+    def next(self, timeout: float) -> CapturedImage | None:
         """Wait for an image newer than the last one; None after `timeout` [s] or `stop`."""
         # With a timeout of 0 it still looks once for an image that is already there.
         began, waited = self._clock(), timeout <= 0
         with self._changed:
             while not self._stopped.is_set():
-                if self._newest is not None:
+                if self._waiting:
                     # Taken away, so that no image is ever returned twice.
-                    newest, self._newest = self._newest, None
-                    return newest
+                    return self._waiting.popleft()
                 self._replace_stuck_thread()
                 if self.failed_to_open or (waited and self._clock() - began >= timeout):
                     return None
@@ -224,8 +241,9 @@ class CaptureThread:
             age = arrival - taken if self.exposure_clock.by_driver else None
             self.gauge.add(waited, arrival, age)
             # An image that nobody fetched: the caller is slower than the camera.
-            self.dropped += self._newest is not None
-            self._newest, self.settings = CapturedImage(image, taken), device.settings
+            self.dropped += len(self._waiting) == self._waiting.maxlen
+            self._waiting.append(CapturedImage(image, taken))
+            self.settings = device.settings
             if self.state != "running":
                 self.state, self.problem, self.since = "running", "", arrival
             elif arrival - self.last_arrival >= SILENCE_S:

@@ -40,6 +40,9 @@ class EncodedImage:
     timestamp: float
     """On the clock of its source [s]."""
 
+    seen: bool = True
+    """Whether its pixels are wanted, not only those of the images that build on it."""
+
     @property
     def alone(self) -> bool:
         """Whether it is decoded without the images before it: a JPEG, or an IDR picture."""
@@ -103,7 +106,7 @@ def _displayed(image: Image, matrix: bytes) -> Image:
 
 
 def decode(images: Iterator[EncodedImage]) -> Iterator[tuple[EncodedImage, Image]]:
-    """Pair each image of a recording with its pixels.
+    """Pair each image of a recording that is seen with its pixels.
 
     H.264 as required by Foxglove: one image per access unit and no B frames.
 
@@ -125,7 +128,7 @@ def decode(images: Iterator[EncodedImage]) -> Iterator[tuple[EncodedImage, Image
                 packet = av.Packet(encoded.data)
                 packet.pts = number
                 yield from _pair(codec.decode(packet), pending)
-            else:
+            elif encoded.seen:
                 image = decode_jpeg(encoded.data)
                 if image is None:
                     raise BrokenFileError("has an image that is not JPEG")
@@ -145,4 +148,6 @@ def _pair(
 ) -> Iterator[tuple[EncodedImage, Image]]:
     for frame in frames:
         assert frame.pts is not None  # those of the packets
-        yield pending.pop(frame.pts), bgr_of(frame)
+        encoded = pending.pop(frame.pts)
+        if encoded.seen:
+            yield encoded, bgr_of(frame)

@@ -102,6 +102,20 @@ class LiveSource(FrameSource):
         return frame
 
     @property
+    def waiting(self) -> int:
+        """See `base.BufferedFrames`."""
+        return self._capture.waiting
+
+    @property
+    def max_waiting(self) -> int:
+        """See `base.BufferedFrames`."""
+        return self._capture.max_waiting
+
+    @max_waiting.setter
+    def max_waiting(self, count: int) -> None:
+        self._capture.max_waiting = count
+
+    @property
     def health(self) -> Health:
         """The current state of the source."""
         capture = self._capture
@@ -154,7 +168,7 @@ class LiveSource(FrameSource):
 
     def _next(self, timeout: float) -> Frame | None:
         began = self._clock()
-        while (captured := self._capture.newest(timeout)) is not None:
+        while (captured := self._capture.next(timeout)) is not None:
             frame = self._decode(captured)
             if frame is not None:
                 return frame

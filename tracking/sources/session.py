@@ -3,6 +3,7 @@
 import itertools
 from collections import deque
 from collections.abc import Generator, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -68,16 +69,14 @@ class SessionSource(StoredFrames):
         if count > 0 and self._first is not None:
             self._first = None
             count -= 1
-        needed = self._ahead
         try:
             for image in itertools.islice(self._images, count):
                 if image.alone:
-                    self._index += len(needed)
-                    needed.clear()
-                needed.append(image)
+                    self._ahead.clear()
+                self._ahead.append(replace(image, seen=False))
+                self._index += 1
         except BrokenFileError:
             pass  # the iteration ends with what is whole
-        super().skip(len(needed))
 
     def _decode_frames(self) -> Generator[Frame, None, None]:
         timeline = Timeline()

@@ -78,7 +78,7 @@ class Choices:
             discard(opened)
             self._session.screen.notify(str(error))
             return
-        self._transport.save_state(by_player=True)
+        self._transport.save_state(exchanged=True)
         self._session.screen.notify(f"The {request.part} is now {request.value}")
         with self._lock:
             self._found = tuple(

@@ -77,7 +77,7 @@ class PlayerControls:
             session.change_setting(request.setting, request.value)
         except (AppError, AffectError) as error:
             session.screen.notify(str(error))
-        self._transport.save_state(by_player=True)
+        self._transport.save_state(exchanged=True)
 
     def _record(self, _: Record) -> None:
         """Begin a recording, or end it."""
@@ -89,6 +89,8 @@ class PlayerControls:
         else:
             seconds = session.recording.seconds
             session.end_recording()
+            # Until now the pixels were those of the recording, which has coded them anew.
+            self._transport.save_state(acted=True)
             played = f"cubeling replay {short_path(session.recorded[-1])}"
             session.screen.notify(f"Recorded {seconds:.0f} s. Play it: {played}")
 
@@ -121,7 +123,7 @@ class PlayerControls:
         except AppError as error:
             session.screen.notify(f"Nothing is recorded: {error}")
             return
-        transport.save_state(by_player=True)
+        transport.save_state(acted=True)
         session.screen.notify(f"Recording from the start: {short_path(path)}")
 
 

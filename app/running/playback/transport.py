@@ -8,6 +8,7 @@ from cubeling.app.running.opening import is_seekable
 from cubeling.app.running.playback.frame_feed import FrameFeed
 from cubeling.app.running.playback.saved_states import SavedStates
 from cubeling.app.ui.playback.status import PlaybackMark, Position
+from cubeling.robot import Closeable
 from cubeling.tracking import Frame, Health, LiveFrames
 
 
@@ -25,19 +26,18 @@ class _Target:
         return frame.timestamp >= self.timestamp and frame.index >= self.index
 
 
-class Transport:
+class Transport(Closeable):
     """Returns the frames of a session, and moves in them.
 
     In a recording the state after a seek is that of all frames before it: the pipeline goes on from
     a saved state, or from the start, and draws nothing until it is there. What a player asked of
-    the scenario is forgotten when the player goes back.
+    the scenario before that frame stays so, and what came later is forgotten.
     """
 
     def __init__(self, session: OpenedSession) -> None:
         self._session = session
         self._feed = FrameFeed(session)
         self._states = SavedStates()
-        self._changed_by_player = False
         self._target: _Target | None = None
         self._first: float | None = None
         self._marks: tuple[PlaybackMark, ...] | None = None
@@ -49,6 +49,10 @@ class Transport:
         """Whether no frame comes until the player goes on."""
         self.ended = False
         """Whether the recording has come to its end, and the player has not sought since."""
+
+    def close(self) -> None:
+        """End what reads ahead; call it before the source is closed. A second call does nothing."""
+        self._feed.close()
 
     @property
     def idle(self) -> bool:
@@ -64,6 +68,11 @@ class Transport:
     def timestamp(self) -> float | None:
         """That of the last frame [s]; None before the first one."""
         return None if self._feed.last is None else self._feed.last.timestamp
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether newer frames of a camera wait already, which is recorded."""
+        return self._session.recording is not None and self._feed.is_behind
 
     def next(self) -> Frame | Health | None:
         """Return the next frame, a live source's health while it has none, or None at the end."""
@@ -141,14 +150,17 @@ class Transport:
             index = max(0, self._feed.last.index + count)
             self._go(_Target((self._first or 0.0) + self._start, index))
 
-    def save_state(self, by_player: bool) -> None:
-        """Save the pipeline's state now and then; `by_player` if the player has changed it."""
-        if by_player:
-            self._changed_by_player = True
+    def save_state(self, *, acted: bool = False, exchanged: bool = False) -> None:
+        """Save the pipeline's state now and then, and where the player acted.
+
+        `acted` is whether the player asked something of the scenario that plays, and `exchanged`
+        whether a part or a setting is another one: no state from before can be restored then.
+        """
+        if exchanged:
             self._states.clear()
         last = self._feed.last
-        if last is not None and self._saves_states and not self._changed_by_player:
-            self._states.save(self._session.playground, last)
+        if last is not None and self._saves_states:
+            self._states.save(self._session.playground, last, acted=acted or exchanged)
 
     def follow_source(self) -> None:
         """Go on with another camera, without a gap in the timestamps."""
@@ -197,9 +209,9 @@ class Transport:
         index = 0 if saved is None else saved.index + 1
         if target.is_reached(self._feed.last) or index > self._feed.last.index + 1:
             self._feed.rewind(index)
+            self._states.go_on_from(saved)
             if saved is None:
                 self._session.restart()
-                self._changed_by_player = False
             else:
                 self._session.playground.restore(saved.checkpoint)
         self._target = target

@@ -30,13 +30,23 @@ of 16:9, the action's card has room beside it."""
 SMOOTHING_S, MIN_STAY_S = 0.5, 2.0
 """Time constant of how much of a card hides something, and how long it stays in a corner."""
 
+SLIDING_S = 0.4
+"""Time in which a card slides to another corner."""
+
 STAY_ADVANTAGE, FREE_ADVANTAGE = 0.1, 0.05
 """How much more of something a card may hide than it would in another corner, and than in a corner
 from which it drives another card."""
 
 
-def card_box(corner: Corner, size: tuple[float, float], picture_width: float) -> Rect:
+def card_box(
+    corner: Corner,
+    size: tuple[float, float],
+    picture_width: float,
+    right_top: float = CARD_MARGIN,
+) -> Rect:
     """Return the left, top, right and bottom edge of a card of a size, in units of the canvas.
+
+    In the top right corner, cards begin at `right_top`.
 
     >>> card_box("bottom right", (300.0, 100.0), 1280.0)
     (956.0, 596.0, 1256.0, 696.0)
@@ -50,7 +60,7 @@ def card_box(corner: Corner, size: tuple[float, float], picture_width: float) ->
     if corner.startswith("bottom"):
         y = PICTURE_HEIGHT - height - CARD_MARGIN
     elif CARD_MARGIN + width + CARD_GAP <= (picture_width - HINT_ROOM) / 2:
-        y = CARD_MARGIN
+        y = right_top if corner == "top right" else CARD_MARGIN
     else:
         y = HINT_TOP + HINT_HEIGHT + CARD_GAP
     return x, y, x + width, y + height
@@ -68,6 +78,21 @@ def are_apart(box: Rect, others: Sequence[Rect]) -> bool:
     )
 
 
+@dataclass(frozen=True)
+class _Slide:
+    """The way of a card to a place, in units of the canvas."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    since: float
+
+    def at(self, now: float) -> tuple[float, float]:
+        share = min(max((now - self.since) / SLIDING_S, 0.0), 1.0)
+        share = share * share * (3.0 - 2.0 * share)  # it starts and stops softly
+        (x, y), (to_x, to_y) = self.start, self.end
+        return x + share * (to_x - x), y + share * (to_y - y)
+
+
 @dataclass
 class _Placed:
     """A card with its history."""
@@ -83,12 +108,30 @@ class CardLayout:
     """Chooses corners for the cards of one sequence of pictures.
 
     Cards are named by their first corner. A card moves where it hides something and another corner
-    is better.
+    is better. In the top right corner they begin at `right_top`.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, right_top: float = CARD_MARGIN) -> None:
+        self._right_top = right_top
         self._cards: dict[Corner, _Placed] = {}
+        self._slides: dict[Corner, _Slide] = {}
         self._now: float | None = None
+
+    def box(self, corner: Corner, size: tuple[float, float], picture_width: float) -> Rect:
+        """Return where a card of a size lies in a corner, as `card_box` does."""
+        return card_box(corner, size, picture_width, self._right_top)
+
+    def slide(self, home: Corner, box: Rect, now: float) -> tuple[float, float]:
+        """Return the top left corner of a card on its way to a box, at a time [s].
+
+        It starts on the way when the box is another one; a new card is there at once.
+        """
+        place = box[:2]
+        slide = self._slides.get(home) or _Slide(place, place, now)
+        if slide.end != place:
+            slide = _Slide(slide.at(now), place, now)
+        self._slides[home] = slide
+        return slide.at(now)
 
     def update(
         self,
@@ -109,11 +152,11 @@ class CardLayout:
         for home, size in cards.items():
             card = self._cards.setdefault(home, _Placed(home, size))
             card.size = size
-            boxes = {corner: card_box(corner, size, picture_width) for corner in CORNERS}
+            boxes = {corner: self.box(corner, size, picture_width) for corner in CORNERS}
             hidden = [_hidden_share(box, subjects) for box in boxes.values()]
             card.hidden += fresh * (np.array(hidden) - card.hidden)
             others = [
-                card_box(each.corner, each.size, picture_width)
+                self.box(each.corner, each.size, picture_width)
                 for each in self._cards.values()
                 if each is not card
             ]

@@ -17,7 +17,6 @@ from cubeling.app.ui.cards.layout import (
     HINT_TOP,
     CardLayout,
     Corner,
-    card_box,
 )
 from cubeling.app.ui.cards.subtitles import draw_subtitle, subtitle, subtitle_place, subtitle_room
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
@@ -49,6 +48,9 @@ MOOD_BAR_X, MOOD_BAR_WIDTH = 116.0, 176.0
 VIRTUAL_ROBOT_SIDE, VIRTUAL_ROBOT_FRAME = 180.0, 8.0
 """Side of the virtual robot's picture, and width of its card's frame."""
 
+CLOSE_UP_SIDE = 256.0
+"""Side of the look into the cube from near by."""
+
 VIRTUAL_ROBOT_TEXT_Y = VIRTUAL_ROBOT_SIDE + VIRTUAL_ROBOT_FRAME + 4.0
 """Top of the text below the picture."""
 
@@ -60,9 +62,6 @@ high a card would hide the cube wherever it lies."""
 
 VIRTUAL_ROBOT_BAR = ((VIRTUAL_ROBOT_CARD_WIDTH - 156.0) / 2, VIRTUAL_ROBOT_TEXT_Y + 65, 156.0)
 """Left end, height on the card, and length of the bar of its mood."""
-
-DIMMED_BRIGHTNESS = 0.45
-"""Share of the last picture's brightness while no new frame comes."""
 
 
 def overlay(
@@ -78,32 +77,62 @@ def overlay(
     drawn face does. `layout` remembers where the cards were in the pictures before; None for a
     single picture.
     """
-    scale = picture.shape[0] / PICTURE_HEIGHT
-    width = picture.shape[1] / scale
-    _hint(step.outcome.hint, width, scale).blend_over(picture)
+    height, width = picture.shape[:2]
+    for card in cards_over(step, robot, (width, height), virtual_robot, layout):
+        card.blend_over(picture)
+    return picture
+
+
+def cards_over(
+    step: Step,
+    robot: RobotView,
+    size: tuple[int, int],
+    virtual_robot: VirtualRobot | None = None,
+    layout: CardLayout | None = None,
+) -> list[Card]:
+    """Return the cards over a picture of a size [px]: those that stay the same are the same object.
+
+    The subjects of the step are places in a picture of that size; the rest is as for `overlay`.
+    """
+    scale = size[1] / PICTURE_HEIGHT
+    width = size[0] / scale
+    hint = step.outcome.hint
+    finished = [_hint(hint, width, scale)] if hint else []
     if virtual_robot is None or robot.real or width < MIN_VIRTUAL_ROBOT_WIDTH:
-        mood = _robot(robot, scale)
+        mood = _robot(robot.link, robot.label, _finite(robot.mood), scale)
     else:
-        mood = _virtual_robot(robot, virtual_robot.portrait(step.emotion), scale)
+        portrait = virtual_robot.portrait(step.emotion)
+        mood = virtual_robot.card(
+            (robot.link, robot.label, robot.mood, scale),
+            lambda: _virtual_robot(robot, portrait, scale),
+        )
     cards: dict[Corner, Canvas] = {"bottom right": mood}
     if step.controls.camera_from_table is not None:
-        cards["bottom left"] = _action(step, scale)
+        name, command = step.outcome.icon, step.command
+        moves = command.activity == "move" or name in ("stand", "walk", "run", "hop")
+        cards["bottom left"] = _action(
+            name, moves, command.speed if moves else command.weight, scale
+        )
+    if step.close_up is not None and width >= MIN_VIRTUAL_ROBOT_WIDTH:
+        cards["top left"] = _close_up(step.close_up, scale)
     sizes = {home: canvas.size for home, canvas in cards.items()}
     subjects = [
         (left / scale, top / scale, right / scale, bottom / scale)
         for left, top, right, bottom in step.subjects
     ]
-    corners = (layout or CardLayout()).update(sizes, subjects, width, step.frame.timestamp)
+    layout = layout or CardLayout()
+    now = step.frame.timestamp
+    corners = layout.update(sizes, subjects, width, now)
     boxes = []
     for home, corner in corners.items():
-        boxes.append(card_box(corner, sizes[home], width))
-        cards[home].card(*boxes[-1][:2]).blend_over(picture)
-    said = subtitle(step.command.speech, step.frame.timestamp)
+        boxes.append(layout.box(corner, sizes[home], width))
+        finished.append(cards[home].card(*layout.slide(home, boxes[-1], now)))
+    said = subtitle(step.command.speech, now)
     if said:
         room = subtitle_room(width, max(card_width for card_width, _ in sizes.values()))
         canvas = draw_subtitle(said, room, scale)
-        canvas.card(*subtitle_place(canvas.size, width, boxes)).blend_over(picture)
-    return picture
+        finished.append(canvas.card(*subtitle_place(canvas.size, width, boxes)))
+    return finished
 
 
 def virtual_robot_side(height: int) -> int:
@@ -111,12 +140,10 @@ def virtual_robot_side(height: int) -> int:
     return round(VIRTUAL_ROBOT_SIDE * height / PICTURE_HEIGHT)
 
 
-def with_notice(picture: NDArray[np.uint8], notice: Notice) -> NDArray[np.uint8]:
-    """Return the last picture (H, W, 3), dimmed, with a notice over it."""
-    dim = np.asarray(cv2.convertScaleAbs(picture, alpha=DIMMED_BRIGHTNESS), np.uint8)
-    scale = picture.shape[0] / PICTURE_HEIGHT
-    _notice(notice, picture.shape[1] / scale, scale).blend_over(dim)
-    return dim
+def notice_card(notice: Notice, size: tuple[int, int]) -> Card:
+    """Return the card of a notice in the middle of a picture of a size [px]."""
+    scale = size[1] / PICTURE_HEIGHT
+    return _notice(notice, size[0] / scale, scale)
 
 
 @lru_cache(maxsize=4)
@@ -141,14 +168,14 @@ def _hint(words: str, width: float, scale: float) -> Card:
     return canvas.card((width - card_width) / 2, HINT_TOP)
 
 
-def _action(step: Step, scale: float) -> Canvas:
-    name = step.outcome.icon
-    moves = step.command.activity == "move" or name in ("stand", "walk", "run", "hop")
+@lru_cache(maxsize=8)
+def _action(name: str, moves: bool, strength: float, scale: float) -> Canvas:
+    """Draw an action with its speed if it moves, else with its weight."""
     canvas = _action_background(name, moves, scale).copy()
     if moves:
-        _speed(canvas, step.command.speed, ACTION_COLORS.get(name, INK))
+        _speed(canvas, strength, ACTION_COLORS.get(name, INK))
     elif name != "idle":
-        _intensity(canvas, step.command.weight, ACTION_COLORS.get(name, INK))
+        _intensity(canvas, strength, ACTION_COLORS.get(name, INK))
     return canvas
 
 
@@ -190,12 +217,24 @@ def _intensity(canvas: Canvas, weight: float, color: Color) -> None:
     canvas.disc(knob, BAR_Y, 8.5, color)
 
 
-def _robot(robot: RobotView, scale: float) -> Canvas:
-    words = {"none": "no robot", "ready": f"robot is {robot.label}"}.get(
-        robot.link, f"robot {robot.link}"
-    )
+def _close_up(picture: NDArray[np.uint8], scale: float) -> Canvas:
+    side = CLOSE_UP_SIDE + 2 * VIRTUAL_ROBOT_FRAME
+    canvas = Canvas(side, side, scale)
+    size = round(CLOSE_UP_SIDE * scale)
+    enlarged = cv2.resize(picture, (size, size), interpolation=cv2.INTER_CUBIC)
+    image = np.asarray(enlarged, np.uint8)
+    canvas.picture(VIRTUAL_ROBOT_FRAME, VIRTUAL_ROBOT_FRAME, image, 12)
+    return canvas
+
+
+def _finite(mood: float) -> float:
+    return mood if math.isfinite(mood) else 0.0
+
+
+@lru_cache(maxsize=8)
+def _robot(link: str, label: str, mood: float, scale: float) -> Canvas:
+    words = {"none": "no robot", "ready": f"robot is {label}"}.get(link, f"robot {link}")
     canvas = _robot_background(words, scale).copy()
-    mood = robot.mood if math.isfinite(robot.mood) else 0.0
     draw_face(canvas, 56, 54, 38, mood)
     _mood_knob(canvas, MOOD_BAR_X, BAR_Y, MOOD_BAR_WIDTH, mood)
     return canvas
@@ -208,8 +247,7 @@ def _virtual_robot(robot: RobotView, portrait: NDArray[np.uint8], scale: float) 
     words = f"robot is {robot.label}"
     canvas = _virtual_robot_background(words, caption, scale).copy()
     canvas.picture(VIRTUAL_ROBOT_FRAME, VIRTUAL_ROBOT_FRAME, portrait, 12)
-    mood = robot.mood if math.isfinite(robot.mood) else 0.0
-    _mood_knob(canvas, *VIRTUAL_ROBOT_BAR, mood)
+    _mood_knob(canvas, *VIRTUAL_ROBOT_BAR, _finite(robot.mood))
     return canvas
 
 

@@ -1,6 +1,7 @@
 """A virtual robot on the screen, which shows the emotion when there is no real robot."""
 
 import math
+from collections.abc import Callable
 
 import cv2
 import moderngl
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from cubeling.affect import HAPPY_ABOVE, Emotion, closest_word
 from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.ui.canvas import Canvas
 from cubeling.app.ui.display import is_software_renderer
 from cubeling.app.ui.palette import PAPER, between, mood_color
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
@@ -17,9 +19,10 @@ from cubeling.characters.rendering import CameraView, SceneCharacter, Stage
 MAX_SIDE_PX = 216
 """Largest picture that is drawn [px]; a larger one is scaled up, to spare software rendering."""
 
-SOFTWARE_INTERVAL_S = 0.08
-"""Shortest time between two pictures with software rendering [s]: every third frame of a usual
-camera, since the character on the table needs the processor too."""
+SOFTWARE_INTERVAL_S, SOFTWARE_CHANGE_S = 0.165, 0.099
+"""Shortest time between two pictures with software rendering, and where the mood has another word
+[s]: every fifth and every third frame of a usual camera, since the character on the table needs the
+processor too."""
 
 YAW_RAD = -0.52
 """Heading of the robot, to the right of the camera, so that its tail is visible [rad]."""
@@ -47,8 +50,10 @@ class VirtualRobot:
         self._stage = Stage(context, (self._drawn_side, self._drawn_side))
         self._matrix, self._camera_from_table = _camera(self._drawn_side)
         software = is_software_renderer(str(context.info["GL_RENDERER"]))
-        self._interval = SOFTWARE_INTERVAL_S if software else 0.0
+        self._intervals = (SOFTWARE_INTERVAL_S, SOFTWARE_CHANGE_S) if software else (0.0, 0.0)
+        self._label = ""
         self._last: tuple[float, NDArray[np.uint8]] | None = None
+        self._card: tuple[object, NDArray[np.uint8], Canvas] | None = None
         self._eye = np.asarray(np.linalg.inv(self._camera_from_table)[:3, 3], np.float64)
 
     def portrait(self, target: EmotionTarget) -> NDArray[np.uint8]:
@@ -56,8 +61,11 @@ class VirtualRobot:
 
         With software rendering, the last picture is returned until `SOFTWARE_INTERVAL_S` is over.
         """
-        if self._last is not None and 0.0 <= target.timestamp - self._last[0] < self._interval:
+        label = target.emotion.label
+        interval = self._intervals[label != self._label]
+        if self._last is not None and 0.0 <= target.timestamp - self._last[0] < interval:
             return self._last[1]
+        self._label = label
         posed = self._animator.update(self.command(target))
         image = backdrop(self._drawn_side, target.emotion.valence)
         view = CameraView(image, self._matrix, np.zeros(0), self._camera_from_table)
@@ -67,6 +75,19 @@ class VirtualRobot:
             picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_CUBIC), np.uint8)
         self._last = target.timestamp, picture
         return picture
+
+    def card(self, content: object, draw: Callable[[], Canvas]) -> Canvas:
+        """Return the card with the last picture: `draw` is called where the content is another."""
+        assert self._last is not None, "a portrait comes first"
+        picture = self._last[1]
+        if self._card is None or self._card[0] != content or self._card[1] is not picture:
+            self._card = content, picture, draw()
+        return self._card[2]
+
+    def fit(self, side: int) -> None:
+        """Give pictures of another side [px] from the next one on."""
+        if side != self.side:
+            self.side, self._last = max(16, side), None
 
     def command(self, target: EmotionTarget) -> CharacterCommand:
         """Return the command that shows an emotion.

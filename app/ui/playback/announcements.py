@@ -1,7 +1,8 @@
 """The small cards below the hint: what the session does, and notices."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
+from cubeling.app.pipeline.step import Rect
 from cubeling.app.ui.canvas import Card
 from cubeling.app.ui.palette import ANGRY, QUIET, Color
 from cubeling.app.ui.playback.cards import draw_pills
@@ -34,8 +35,13 @@ class Announcements:
         """Show a notice, in the place of the one before."""
         self._notice, self._until = words, self._clock() + NOTICE_S
 
-    def draw(self, status: SessionStatus, width: float, scale: float) -> list[Card]:
-        """Return the cards for a state of the session; `width` in units of the canvas."""
+    def draw(
+        self, status: SessionStatus, width: float, scale: float, taken: Sequence[Rect] = ()
+    ) -> list[Card]:
+        """Return the cards for a state of the session; all in units of the canvas.
+
+        They lie in a picture of a width, and over none of the rectangles that are `taken`.
+        """
         pills: list[tuple[str, Color | None]] = []
         if status.recording is not None:
             minutes, seconds = divmod(int(status.recording), 60)
@@ -48,7 +54,7 @@ class Announcements:
             self._notice = ""
         if self._notice:
             pills.append((self._notice, None))
-        return draw_pills(tuple(pills), width, scale)
+        return draw_pills(tuple(pills), width, scale, taken)
 
     def _seeks_long(self, status: SessionStatus) -> bool:
         if not status.seeking:

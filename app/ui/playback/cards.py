@@ -1,9 +1,11 @@
 """Cards that the player asks for, and those that a session shows for a while."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 
+from cubeling.app.pipeline.step import Rect
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width, wrap_text
-from cubeling.app.ui.cards.layout import HINT_ROOM
+from cubeling.app.ui.cards.layout import CARD_GAP, HINT_ROOM, are_apart
 from cubeling.app.ui.palette import ACTION_COLORS, INK, QUIET, RULE, Color
 from cubeling.app.ui.playback.keys import KeyHelp, key_rows
 from cubeling.app.ui.playback.status import EndCard
@@ -29,29 +31,45 @@ KEYS_WIDTH, KEYS_TOP, KEYS_LEFT = 880.0, 26.0, (32.0, 508.0)
 
 
 def draw_pills(
-    pills: tuple[tuple[str, Color | None], ...], width: float, scale: float
+    pills: tuple[tuple[str, Color | None], ...],
+    width: float,
+    scale: float,
+    taken: Sequence[Rect] = (),
 ) -> list[Card]:
     """Return small cards below each other: their words, and the colour of a disc or None.
 
     They are no wider than the room that other cards keep free for the hint: long words, such as a
-    command with the name of a file, take two lines.
+    command with the name of a file, take two lines. They lie below what is `taken` in their way.
     """
     cards, y = [], PILLS_TOP
     for words, color in pills:
         lines = tuple(wrap_text(words, min(width - 60, HINT_ROOM - 70), PILL_TEXT))
+        size, height = _pill_text(lines, width), PILL_HEIGHT + PILL_LINE * (len(lines) - 1)
+        half = _pill_width(lines, color, size) / 2
+        for box in sorted(taken, key=lambda box: box[1]):
+            if not are_apart((width / 2 - half, y, width / 2 + half, y + height), [box]):
+                y = box[3] + CARD_GAP
         cards.append(_pill(lines, color, y, width, scale))
-        y += PILL_HEIGHT + PILL_LINE * (len(lines) - 1) + PILL_GAP
+        y += height + PILL_GAP
     return cards
+
+
+def _pill_text(lines: tuple[str, ...], width: float) -> float:
+    longest = max(text_width(line, PILL_TEXT) for line in lines)
+    return PILL_TEXT * min(1.0, min(width - 60, HINT_ROOM - 70) / longest)
+
+
+def _pill_width(lines: tuple[str, ...], color: Color | None, size: float) -> float:
+    return max(text_width(line, size) for line in lines) + (42.0 if color is None else 68.0)
 
 
 @lru_cache(maxsize=32)
 def _pill(
     lines: tuple[str, ...], color: Color | None, y: float, width: float, scale: float
 ) -> Card:
-    longest = max(text_width(line, PILL_TEXT) for line in lines)
-    size = PILL_TEXT * min(1.0, min(width - 60, HINT_ROOM - 70) / longest)
+    size = _pill_text(lines, width)
     left = 20.0 if color is None else 46.0
-    card_width = max(text_width(line, size) for line in lines) + left + 22
+    card_width = _pill_width(lines, color, size)
     canvas = Canvas(card_width, PILL_HEIGHT + PILL_LINE * (len(lines) - 1), scale)
     if color is not None:
         canvas.disc(26, PILL_HEIGHT / 2, 8, color)

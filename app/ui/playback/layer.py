@@ -14,13 +14,16 @@ from numpy.typing import NDArray
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import dated_file, short_path
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.pipeline.step import Rect
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Card
 from cubeling.app.ui.playback import timeline
 from cubeling.app.ui.playback.announcements import Announcements
 from cubeling.app.ui.playback.cards import draw_ending, draw_keys
+from cubeling.app.ui.playback.corner_buttons import button_at, draw_buttons
 from cubeling.app.ui.playback.keys import find_binding
 from cubeling.app.ui.playback.menu import MENU_KEYS, Menu
 from cubeling.app.ui.playback.requests import (
+    Choose,
     ListChoices,
     OpenCube,
     Pause,
@@ -31,18 +34,25 @@ from cubeling.app.ui.playback.requests import (
     StartOver,
     WindowRequest,
 )
-from cubeling.app.ui.playback.status import NO_STATUS, SessionStatus
+from cubeling.app.ui.playback.scenario_card import ScenarioCard
+from cubeling.app.ui.playback.status import NO_STATUS, MenuChoice, SessionStatus
 from cubeling.files import write_whole
 
 Picture = NDArray[np.uint8]
 
-ENDING_KEYS = "Space plays it again  ·  Esc or Enter closes"
+SCENARIO_PART = "scenario"
+"""The column of the menu that the layer fills by itself."""
+
+CLOSING_KEYS = ("Enter", "Space")
+"""Keys that close the card of scenarios, besides Esc: the present one goes on."""
+
+ENDING_KEYS = "Space plays it again  ·  1 to 9 another scenario  ·  Esc or Enter closes"
 
 
 class PlaybackLayer:
     """What the player asks for, and what is shown because of it.
 
-    The window passes on keys and mouse, and shows what `draw` returns.
+    The window passes on keys and mouse, and shows what `cards` returns.
 
     Parameters
     ----------
@@ -52,6 +62,8 @@ class PlaybackLayer:
         Where snapshots go.
     actions
         What carries out requests that need a window.
+    picture
+        Returns the picture with its cards, (H, W, 3), to keep it; None before the first.
     clock, now
         Return the time [s], for notices, and the local time, for the names of files.
     """
@@ -61,11 +73,13 @@ class PlaybackLayer:
         scenarios: Sequence[str],
         folder: Path,
         actions: Mapping[WindowRequest, Callable[[], None]],
+        picture: Callable[[], Picture | None],
         clock: Callable[[], float] = time.monotonic,
         now: Callable[[], datetime] = datetime.now,
     ) -> None:
         self.mirrored = False
         """Whether the picture is to be shown as in a mirror."""
+        self._picture_shown = picture
         self._scenarios, self._folder = tuple(scenarios), folder
         self._announcements, self._now = Announcements(clock), now
         self._actions: dict[WindowRequest, Callable[[], None]] = {
@@ -73,6 +87,7 @@ class PlaybackLayer:
             WindowRequest.SNAPSHOT: self._snapshot,
             WindowRequest.KEYS: self._toggle_keys,
             WindowRequest.MENU: self._toggle_menu,
+            WindowRequest.SCENARIOS: self._toggle_scenarios,
             WindowRequest.BACK: self._back,
             **actions,
         }
@@ -87,11 +102,13 @@ class PlaybackLayer:
         self._requests: list[SessionRequest] = []
         self._keys = False
         self._menu: Menu | None = None
+        self._card = ScenarioCard(scenarios)
+        self.shows_scenarios = False
+        """Whether the card with all scenarios lies over the picture."""
         self._pointer: float | None = None
         self._dragging = False
         self._changed = True
         self._width = 0.0
-        self._picture: Picture | None = None
 
     @property
     def changed(self) -> bool:
@@ -109,7 +126,7 @@ class PlaybackLayer:
             return
         self._status, self._changed = status, True
         if self._menu is not None:
-            self._menu.update(status.choices, status.looking)
+            self._menu.update(self._choices, status.looking)
 
     def notify(self, words: str) -> None:
         """Show a notice for some seconds."""
@@ -132,6 +149,9 @@ class PlaybackLayer:
         if self._menu is not None and key in MENU_KEYS:
             self._request(self._menu.press(key))
             return
+        if self.shows_scenarios and key in CLOSING_KEYS:
+            self.shows_scenarios = False
+            return
         if key == "Enter" and self._status.ending is not None:
             self._request(WindowRequest.QUIT)
             return
@@ -152,7 +172,15 @@ class PlaybackLayer:
     def click(self, x: float, y: float) -> None:
         """Press the mouse's button at a place of the picture, in units of the canvas."""
         self._changed = True
-        if self._menu is not None:
+        button = button_at(x, y, self._width)
+        if button is not None:
+            self._request(button)
+        elif self.shows_scenarios:
+            number = self._card.click(x, y, self._width)
+            self.shows_scenarios = False
+            if number is not None:
+                self._request(PlayScenario(number))
+        elif self._menu is not None:
             self._request(self._menu.click(x, y, self._width))
         elif PICTURE_HEIGHT <= y <= PICTURE_HEIGHT + self.strip_height:
             if timeline.is_on_button(x):
@@ -165,33 +193,49 @@ class PlaybackLayer:
         """Release the mouse's button."""
         self._dragging = False
 
-    def draw(self, picture: Picture) -> Picture:
-        """Return a picture (H, W, 3), whose cards are drawn, with everything over and under it."""
+    def cards(self, size: tuple[int, int], taken: Sequence[Rect] = ()) -> list[Card]:
+        """Return what lies over a picture of a size [px], and the strip under it.
+
+        Notices lie over none of the places that are `taken`, in units of the canvas.
+        """
         self._changed = False
-        self._picture = picture
-        scale = picture.shape[0] / PICTURE_HEIGHT
-        self._width = width = picture.shape[1] / scale
-        shown = picture.copy()
-        if self._status.ending is not None and not self._keys and self._menu is None:
-            draw_ending(self._status.ending, ENDING_KEYS, width, scale).blend_over(shown)
-        for card in self._announcements.draw(self._status, width, scale):
-            card.blend_over(shown)
+        scale = size[1] / PICTURE_HEIGHT
+        self._width = width = size[0] / scale
+        cards = [draw_buttons(width, scale)]
+        covered = self._keys or self._menu is not None or self.shows_scenarios
+        if self._status.ending is not None and not covered:
+            cards.append(draw_ending(self._status.ending, ENDING_KEYS, width, scale))
+        cards += self._announcements.draw(self._status, width, scale, taken)
         if self._keys:
-            draw_keys(width, scale).blend_over(shown)
+            cards.append(draw_keys(width, scale))
         if self._menu is not None:
-            self._menu.draw(width, scale).blend_over(shown)
+            cards.append(self._menu.draw(width, scale))
+        if self.shows_scenarios:
+            cards.append(self._card.draw(self._status.scenario, width, scale))
         position = self._status.position
         if position is None:
-            return shown
+            return cards
         if self._pointer is not None and not timeline.is_on_button(self._pointer):
-            timeline.draw_pointer(self._pointer, position, width, scale).blend_over(shown)
-        strip = timeline.draw_strip(position, self._status.paused, width, scale)
-        return np.vstack([shown, strip])
+            cards.append(timeline.draw_pointer(self._pointer, position, width, scale))
+        return [*cards, timeline.strip_of(position, self._status.paused, width, scale)]
+
+    @property
+    def _choices(self) -> tuple[MenuChoice, ...]:
+        """What the menu lists: the scenarios, and what the session has found."""
+        present = self._status.scenario
+        scenarios = (
+            MenuChoice(SCENARIO_PART, name, f"{number}  {name}", present=name == present)
+            for number, name in enumerate(self._scenarios, 1)
+        )
+        return (*scenarios, *self._status.choices)
 
     def _request(self, request: Request | None) -> None:
         """Carry out a request, or keep it for the session."""
         if request is None:
             return
+        if isinstance(request, Choose) and request.part == SCENARIO_PART:
+            request = PlayScenario(self._scenarios.index(request.value) + 1)
+            self._menu = None
         handler = self._handlers.get(type(request))
         if handler is not None:
             handler(request)
@@ -212,47 +256,62 @@ class PlaybackLayer:
 
     def _start_over(self, _: StartOver) -> None:
         self._inputs = replace(self._inputs, clear=True)
+        self._play_again()
         self.notify("Starting over")
 
+    def _play_again(self) -> None:
+        """Begin again if the recording is over: what was asked for happens then."""
+        if self._status.ending is not None:
+            self._ask_session(Pause())
+
     def _open_cube(self, _: OpenCube) -> None:
+        if self._status.ending is not None:
+            self.notify("The recording is over: Space plays it again")
+            return
         self._inputs = replace(self._inputs, inside=not self._inputs.inside)
 
     def _play_scenario(self, request: PlayScenario) -> None:
         if request.number > len(self._scenarios):
             self.notify(f"There is no scenario {request.number}")
             return
+        self.shows_scenarios = False
         self._inputs = replace(self._inputs, scenario=self._scenarios[request.number - 1])
+        self._play_again()
 
     def _mirror(self) -> None:
         self.mirrored = not self.mirrored
         self.notify("Mirrored" if self.mirrored else "Not mirrored")
 
     def _toggle_keys(self) -> None:
-        self._keys, self._menu = not self._keys, None
+        self._keys, self._menu, self.shows_scenarios = not self._keys, None, False
+
+    def _toggle_scenarios(self) -> None:
+        self._keys, self._menu, self.shows_scenarios = False, None, not self.shows_scenarios
 
     def _toggle_menu(self) -> None:
-        self._keys = False
+        self._keys = self.shows_scenarios = False
         if self._menu is not None:
             self._menu = None
             return
         self._menu = Menu()
-        self._menu.update(self._status.choices, True)
+        self._menu.update(self._choices, True)
         self._requests.append(ListChoices())
 
     def _back(self) -> None:
-        if self._keys or self._menu is not None:
-            self._keys, self._menu = False, None
+        if self._keys or self._menu is not None or self.shows_scenarios:
+            self._keys, self._menu, self.shows_scenarios = False, None, False
         else:
             self._actions[WindowRequest.QUIT]()
 
     def _snapshot(self) -> None:
-        if self._picture is None:
+        picture = self._picture_shown()
+        if picture is None:
             return
         try:
             path = dated_file(
                 self._folder, self._status.scenario or "cubeling", ".png", self._now()
             )
-            write_whole(path, cv2.imencode(".png", self._picture)[1].tobytes(), AppError)
+            write_whole(path, cv2.imencode(".png", picture)[1].tobytes(), AppError)
         except (AppError, OSError) as error:
             self.notify(f"No snapshot was kept: {error}")
         else:

@@ -17,6 +17,7 @@ class WindowRequest(Enum):
     PANELS = "show or hide the panels"
     KEYS = "show or hide the keys"
     MENU = "show or hide the menu"
+    SCENARIOS = "show or hide what can be played"
     BACK = "close what lies over the picture, else the window"
     QUIT = "close the window"
 

@@ -1,9 +1,9 @@
 """The strip under the picture of a recording: where it is, and what happened when."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
 from cubeling.app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between
@@ -14,6 +14,9 @@ STRIP_HEIGHT = 56.0
 
 TRACK_LEFT, TRACK_RIGHT = 214.0, 36.0
 """Distance of the track's ends from the sides of the strip."""
+
+LETTER_GAP = 0.6
+"""Distance between the letters of the time."""
 
 TRACK_Y = STRIP_HEIGHT / 2
 BUTTON_X = 36.0
@@ -35,14 +38,25 @@ MARK_COLORS: dict[str, Color] = {
 """Colours of the marks by how their event begins; others are gestures."""
 
 
-def draw_strip(position: Position, paused: bool, width: float, scale: float) -> NDArray[np.uint8]:
-    """Return the strip under a picture, (height, width, 3) BGR; `width` in units of the canvas."""
+def strip_of(position: Position, paused: bool, width: float, scale: float) -> Card:
+    """Return the strip under a picture; `width` in units of the canvas.
+
+    It changes as often as the time on it does: a tenth of a second is less than a pixel or two.
+    """
+    return _strip(replace(position, now=int(10 * position.now + 1e-6) / 10), paused, width, scale)
+
+
+@lru_cache(maxsize=2)
+def _strip(position: Position, paused: bool, width: float, scale: float) -> Card:
     canvas = _background(position.marks, position.length, width, scale).copy()
     _button(canvas, paused)
     shown = position.now if position.target is None else position.target
-    canvas.text(64, TRACK_Y + 6, clock_time(shown), 19, INK)
+    x = 64.0
+    for letter in clock_time(shown):  # each is drawn once: the time seldom is the same again
+        canvas.text(x, TRACK_Y + 6, letter, 19, INK)
+        x += text_width(letter, 19) + LETTER_GAP
     canvas.text(
-        64 + text_width(clock_time(shown), 19) + 6,
+        x + 6,
         TRACK_Y + 6,
         f"/ {clock_time(position.length)}",
         19,
@@ -63,7 +77,7 @@ def draw_strip(position: Position, paused: bool, width: float, scale: float) -> 
         canvas.disc(target, TRACK_Y, 7, PAPER)
     canvas.disc(now, TRACK_Y, 10, PAPER)
     canvas.disc(now, TRACK_Y, 8, PLAYED)
-    return canvas.color
+    return canvas.strip(PICTURE_HEIGHT)
 
 
 def position_at(x: float, position: Position, width: float) -> float:
@@ -77,6 +91,7 @@ def is_on_button(x: float) -> bool:
     return x < TRACK_LEFT - 20
 
 
+@lru_cache(maxsize=2)
 def draw_pointer(x: float, position: Position, width: float, scale: float) -> Card:
     """Return the label of the place under the mouse, above the strip: its time, or its mark."""
     time = position_at(x, position, width)

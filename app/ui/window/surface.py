@@ -1,14 +1,18 @@
 """A window of the desktop that shows pictures, as large as they fit into it."""
 
 import contextlib
+from collections.abc import Sequence
 from typing import Any, Self
 
+import cv2
 import glfw
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
+from cubeling.app.ui.canvas import Card
+from cubeling.app.ui.window.card_textures import CardTextures
 from cubeling.characters.rendering import create_context
 
 VERTEX_SHADER = """
@@ -24,9 +28,14 @@ void main() {
 FRAGMENT_SHADER = """
 #version 330
 uniform sampler2D picture;
+uniform float brightness;
+uniform bool mirrored;
 in vec2 place;
 out vec4 color;
-void main() { color = vec4(texture(picture, place).bgr, 1.0); }
+void main() {
+    vec2 seen = mirrored ? vec2(1.0 - place.x, place.y) : place;
+    color = vec4(brightness * texture(picture, seen).bgr, 1.0);
+}
 """
 
 KEY_NAMES = {
@@ -108,13 +117,19 @@ class WindowSurface:
             raise AppError(f"no window can be opened here: {self._error}")
         glfw.make_context_current(self._window)
         glfw.swap_interval(0)  # a camera's frame must not wait for the screen's
+        self._framebuffer_size: tuple[int, int] = glfw.get_framebuffer_size(self._window)
+        glfw.set_framebuffer_size_callback(self._window, self._on_size)
         glfw.set_key_callback(self._window, self._on_key)
         glfw.set_char_callback(self._window, self._on_character)
         glfw.set_cursor_pos_callback(self._window, self._on_pointer)
         glfw.set_mouse_button_callback(self._window, self._on_button)
         self.context = create_context(window=True)
         """Where a `Stage` for this window draws."""
-        self._texture = self.context.texture(size, 3, alignment=1)
+        self._whole, self._card_origin = size, (0, 0)
+        self._texture = self.context.texture(size, 4)
+        # OpenCV adds the fourth channel in a quarter of the time that a software driver takes.
+        self._pixels = np.empty((size[1], size[0], 4), np.uint8)
+        self._cards = CardTextures(self.context, VERTEX_SHADER)
         self._program = self.context.program(
             vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER
         )
@@ -133,23 +148,73 @@ class WindowSurface:
         """Whether the user has closed the window."""
         return not self._open or bool(glfw.window_should_close(self._window))
 
-    def paint(self, picture: NDArray[np.uint8]) -> None:
-        """Draw a picture into the back buffer, as large as it fits."""
+    def paint(
+        self,
+        picture: NDArray[np.uint8],
+        cards: Sequence[Card] = (),
+        below: int = 0,
+        *,
+        mirrored: bool = False,
+        brightness: float = 1.0,
+    ) -> None:
+        """Draw a picture into the back buffer, as large as it fits.
+
+        Parameters
+        ----------
+        picture
+            (height, width, 3) BGR.
+        cards
+            Drawn over it, in pixels of the window: see `shown_size`.
+        below
+            Room under the picture [px of the picture].
+        mirrored
+            Whether it is seen as in a mirror; cards are not.
+        brightness
+            That of the picture, 0…1.
+        """
         height, width = picture.shape[:2]
-        if (width, height) != self._texture.size:
-            self._texture.release()
-            self._texture = self.context.texture((width, height), 3, alignment=1)
-        self._texture.write(np.ascontiguousarray(picture))
+        self._upload(picture)
+        self._whole = width, height + below
         screen = self.context.detect_framebuffer(0)
         screen.use()
-        wide, high = glfw.get_framebuffer_size(self._window)
+        wide, high = self._framebuffer_size
         screen.viewport = (0, 0, wide, high)
         screen.clear(0.09, 0.10, 0.13)
-        screen.viewport = self.picture_place(width, height)
+        left, bottom, _, whole_height = self.picture_place(*self._whole)
+        shown_width, shown_height = self.shown_size(width, height, below)
+        top = bottom + whole_height
+        screen.viewport = (left, top - shown_height, shown_width, shown_height)
         self.context.disable(moderngl.DEPTH_TEST | moderngl.BLEND | moderngl.CULL_FACE)
+        # Without a graphics card, filtering takes twice as long as copying.
+        exact = (shown_width, shown_height) == (width, height)
+        self._texture.filter = (moderngl.NEAREST if exact else moderngl.LINEAR,) * 2
         self._texture.use(0)
+        self._program["mirrored"], self._program["brightness"] = mirrored, brightness
         self._quad.render(moderngl.TRIANGLE_STRIP, 4)
-        screen.viewport = (0, 0, wide, high)
+        self._card_origin = left, top
+        self._cards.begin()
+        self.paint_cards(cards)
+
+    def paint_cards(self, cards: Sequence[Card]) -> None:
+        """Draw cards over what was painted; after `paint`, over the picture that it has drawn."""
+        screen = self.context.detect_framebuffer(0)
+        screen.use()
+        self._cards.draw(cards, screen, *self._card_origin)
+        screen.viewport = (0, 0, *self._framebuffer_size)
+
+    def shown_size(self, width: int, height: int, below: int = 0) -> tuple[int, int]:
+        """Return width and height of a picture in the window [px], with so much room below it."""
+        _, _, shown_width, whole_height = self.picture_place(width, height + below)
+        return shown_width, round(whole_height * height / (height + below))
+
+    def _upload(self, picture: NDArray[np.uint8]) -> None:
+        height, width = picture.shape[:2]
+        if (width, height) != self._texture.size or self._pixels.shape[:2] != (height, width):
+            self._texture.release()
+            self._texture = self.context.texture((width, height), 4)
+            self._pixels = np.empty((height, width, 4), np.uint8)
+        cv2.cvtColor(picture, cv2.COLOR_BGR2BGRA, dst=self._pixels)
+        self._texture.write(self._pixels)
 
     def present(self) -> None:
         """Show what was drawn, and process events."""
@@ -211,7 +276,7 @@ class WindowSurface:
             return
         self._open = False
         self.release()
-        for thing in (self._quad, self._program, self._texture):
+        for thing in (self._cards, self._quad, self._program, self._texture):
             thing.release()
         self.context.release()
         glfw.destroy_window(self._window)
@@ -222,17 +287,17 @@ class WindowSurface:
 
     def in_picture(self, x: float, y: float) -> tuple[float, float]:
         """Return the place in the picture [px] of one in the window [screen coordinates]."""
-        left, _, shown_width, shown_height = self.picture_place(*self._texture.size)
-        wide, high = glfw.get_framebuffer_size(self._window)
+        left, _, shown_width, shown_height = self.picture_place(*self._whole)
+        wide, high = self._framebuffer_size
         columns, rows = glfw.get_window_size(self._window)  # in other units on a fine screen
         top = (high - shown_height) // 2
-        scale = self._texture.size[0] / max(1, shown_width)
+        scale = self._whole[0] / max(1, shown_width)
         x_px, y_px = x * wide / max(1, columns), y * high / max(1, rows)
         return (x_px - left) * scale, (y_px - top) * scale
 
     def picture_place(self, width: int, height: int) -> tuple[int, int, int, int]:
         """Return left, bottom, width and height of a picture in the window [px]."""
-        wide, high = glfw.get_framebuffer_size(self._window)
+        wide, high = self._framebuffer_size
         scale = min(wide / width, high / height)
         shown = (round(width * scale), round(height * scale))
         return (wide - shown[0]) // 2, (high - shown[1]) // 2, *shown
@@ -242,6 +307,10 @@ class WindowSurface:
         if name is not None and action in (glfw.PRESS, glfw.REPEAT):
             shift = bool(mods & glfw.MOD_SHIFT)
             self.handle_key(name, shift=shift, repeated=action == glfw.REPEAT)
+
+    def _on_size(self, _window: Any, wide: int, high: int) -> None:
+        # Kept, as each question to the display takes a tenth of a millisecond.
+        self._framebuffer_size = wide, high
 
     def _on_character(self, _window: Any, code: int) -> None:
         if chr(code) in TYPED_KEYS:

@@ -1,9 +1,9 @@
 """The live window: the picture with its cards, what the player asks for, and the panels."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import glfw
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +12,15 @@ from cubeling.app.pipeline.registry import scenario_names
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Rect, RobotView, Step
 from cubeling.app.preferences import PreferenceStore
-from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.canvas import PICTURE_HEIGHT, Card
+from cubeling.app.ui.cards.hint_reader import HintReader
 from cubeling.app.ui.cards.layout import CardLayout
-from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side, with_notice
+from cubeling.app.ui.cards.overlay import cards_over, notice_card, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.panels.drawing.layer import PanelLayer
 from cubeling.app.ui.panels.monitor import SessionMonitor
+from cubeling.app.ui.playback.corner_buttons import ROOM_BELOW
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.requests import SessionRequest, WindowRequest
 from cubeling.app.ui.playback.status import SessionStatus
@@ -26,9 +28,8 @@ from cubeling.app.ui.window.surface import WindowSurface
 
 Picture = NDArray[np.uint8]
 
-MIN_ENLARGEMENT, MAX_ENLARGEMENT = 1.1, 2.0
-"""A picture that is shown larger than this is enlarged before cards are drawn over it; at most so
-much, as the time grows with the area."""
+DIMMED_BRIGHTNESS = 0.45
+"""Share of the last picture's brightness while no new frame comes."""
 
 
 class Window(WindowSurface):
@@ -81,40 +82,49 @@ class Window(WindowSurface):
                 WindowRequest.FULL_SCREEN: self.toggle_full_screen,
                 WindowRequest.QUIT: self.quit,
             },
+            self._picture_with_cards,
         )
         self._layer.mirrored = began.mirror
-        self._virtual_robot = VirtualRobot(self.context, virtual_robot_side(height))
-        self._layout = CardLayout()
+        # A player in front of a camera is asked once what to play.
+        self._chooses = not strip and not (monitor and monitor.options.keeps_scenario)
+        self._layer.shows_scenarios = self._chooses and not began.welcomed
+        self._virtual_robot = VirtualRobot(
+            self.context, virtual_robot_side(max(height, round(PICTURE_HEIGHT)))
+        )
+        self._layout = CardLayout(ROOM_BELOW)
         self._panels: PanelLayer | None = None
         if monitor is not None:
             self._panels = PanelLayer(self._window, self.context, monitor, preferences)
         self._panel_requests: list[SessionRequest] = []
         self._shown: tuple[Step, RobotView] | None = None
-        self._picture: Picture | None = None
         self._pointer = (0.0, 0.0)
         self._titled = ""
+        self._told = True
+        self._hint_reader = HintReader()
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step, and return what the player asks of the scenario."""
-        self.preview(step, robot)
+        self._present(self._hint_reader.update(step), robot)
         return self._layer.take_inputs()
 
     def preview(self, step: Step, robot: RobotView) -> None:
-        """Show a step; what the player asks of the scenario is returned by the next `show`."""
+        """Show a step on the way to another one, without what it tells of a moment that passes."""
+        self._present(step, robot, told=False)
+
+    def _present(self, step: Step, robot: RobotView, *, told: bool = True) -> None:
         if self.closed:
             return
         if self._shown is not None and step.frame.timestamp < self._shown[0].frame.timestamp:
-            self._layout = CardLayout()  # it goes on from an earlier frame
-        self._shown = step, robot
+            self._layout = CardLayout(ROOM_BELOW)  # it goes on from an earlier frame
+        self._shown, self._told = (step, robot), told
         self._redraw()
 
     def wait(self, notice: Notice | None) -> None:
         """Process events; show a notice over the last picture, or what has changed over it."""
         if self.closed:
             return
-        if notice is not None and self._picture is not None:
-            self.paint(self._layer.draw(with_notice(self._picture, notice)))
-            self._draw_over()
+        if notice is not None and self._shown is not None:
+            self._redraw(notice)
         elif self._layer.changed or (self._panels is not None and self._panels.busy):
             self._redraw()
         else:
@@ -142,6 +152,7 @@ class Window(WindowSurface):
             window_size=self.chosen_size,
             full_screen=self.fills_screen,
             mirror=self._layer.mirrored,
+            welcomed=self._preferences.now.welcomed or self._chooses,
         )
         if self._panels is not None:
             self._panels.close()
@@ -169,29 +180,63 @@ class Window(WindowSurface):
         """Pixels of a picture for a unit of the canvas."""
         return 1.0 if self._picture is None else self._picture.shape[0] / PICTURE_HEIGHT
 
-    def _redraw(self) -> None:
-        """Draw the last step with everything over it, and show it."""
+    @property
+    def _picture(self) -> Picture | None:
+        """The last picture, without cards."""
+        return None if self._shown is None else self._shown[0].picture
+
+    def _redraw(self, notice: Notice | None = None) -> None:
+        """Draw the last step with everything over it, and show it; dimmed under a notice."""
         if self._shown is None:
             self.poll()
             return
         step, robot = self._shown
+        over: list[Card] = []
         if step.picture is not None:
             height, width = step.picture.shape[:2]
-            step = mirror(step) if self._layer.mirrored else step
-            step = enlarge(step, self._enlargement(width, height))
-            step = replace(step, subjects=(*step.subjects, *self._panel_areas()))
-            assert step.picture is not None
-            self._fit_virtual_robot(step.picture.shape[0])
-            self._picture = overlay(
-                step.picture.copy(), step, robot, self._virtual_robot, self._layout
-            )
-            self.paint(self._layer.draw(self._picture))
-        self._draw_over()
+            below = round(self._layer.strip_height * height / PICTURE_HEIGHT)
+            size = self.shown_size(width, height, below)
+            if min(size) > 0:  # else it is iconified
+                cards = [] if notice is None else [notice_card(notice, size)]
+                if notice is None and self._told and not self._layer.shows_scenarios:
+                    cards = self._cards_of(step, robot, size)
+                brightness = 1.0 if notice is None else DIMMED_BRIGHTNESS
+                mirrored = self._layer.mirrored
+                self.paint(step.picture, cards, below, mirrored=mirrored, brightness=brightness)
+                unit = size[1] / PICTURE_HEIGHT
+                over = self._layer.cards(size, [card.box(unit) for card in cards])
+        self._draw_over(over)
 
-    def _draw_over(self) -> None:
-        """Draw the panels over what was painted, and show both."""
-        if self._panels is not None:
+    def _cards_of(self, step: Step, robot: RobotView, size: tuple[int, int]) -> list[Card]:
+        """Return the cards over a step whose picture is shown in a size [px]."""
+        assert step.picture is not None
+        subjects = scaled_subjects(step, size[0] / step.picture.shape[1], self._layer.mirrored)
+        close_up = step.close_up
+        if close_up is not None and self._layer.mirrored:
+            close_up = np.ascontiguousarray(close_up[:, ::-1])
+        subjects = (*subjects, *self._panel_areas(size))
+        step = replace(step, subjects=subjects, close_up=close_up)
+        self._virtual_robot.fit(virtual_robot_side(size[1]))
+        return cards_over(step, robot, size, self._virtual_robot, self._layout)
+
+    def _picture_with_cards(self) -> Picture | None:
+        """Return the last picture with its cards, to keep it; None before the first one."""
+        if self._shown is None or self._shown[0].picture is None:
+            return None
+        step, robot = self._shown
+        assert step.picture is not None
+        picture = step.picture[:, ::-1] if self._layer.mirrored else step.picture
+        height, width = picture.shape[:2]
+        picture = np.ascontiguousarray(picture)
+        for card in self._cards_of(step, robot, (width, height)):
+            card.blend_over(picture)
+        return picture
+
+    def _draw_over(self, cards: Sequence[Card]) -> None:
+        """Draw the panels over what was painted, cards over the panels, and show all."""
+        if self._panels is not None and self._panels.shown:
             self._panel_requests += self._panels.draw(self._strip_height)
+        self.paint_cards(cards)
         self.present()
 
     def _toggle_panels(self) -> None:
@@ -209,52 +254,26 @@ class Window(WindowSurface):
         _, top = self.in_picture(0.0, 0.0)
         return high * (bottom - float(self._picture.shape[0])) / (bottom - top)
 
-    def _panel_areas(self) -> list[Rect]:
-        """Return where panels lie in the picture [px], so that cards avoid them."""
-        rects = [] if self._panels is None else self._panels.rects
-        return [
+    def _panel_areas(self, size: tuple[int, int]) -> list[Rect]:
+        """Return where panels lie in a picture of a size [px], so that cards avoid them."""
+        rects = [] if self._panels is None or self._picture is None else self._panels.rects
+        scale = 1.0 if self._picture is None else size[1] / self._picture.shape[0]
+        areas = [
             (*self.in_picture(left, top), *self.in_picture(left + wide, top + high))
             for left, top, wide, high in rects
         ]
-
-    def _enlargement(self, width: int, height: int) -> float:
-        """Return how much larger a picture is drawn than it is, for cards as sharp as the screen.
-
-        It is 1 for a picture that is shown about as large as it is, or smaller.
-        """
-        strip = round(self._layer.strip_height * height / PICTURE_HEIGHT)
-        shown = self.picture_place(width, height + strip)[2] / width
-        return min(shown, MAX_ENLARGEMENT) if shown > MIN_ENLARGEMENT else 1.0
-
-    def _fit_virtual_robot(self, height: int) -> None:
-        """Draw the virtual robot as large as the pictures ask: another camera may have others."""
-        side = virtual_robot_side(height)
-        if side != self._virtual_robot.side:
-            self._virtual_robot.close()
-            self._virtual_robot = VirtualRobot(self.context, side)
+        return [(scale * x, scale * y, scale * to_x, scale * to_y) for x, y, to_x, to_y in areas]
 
 
-def mirror(step: Step) -> Step:
-    """Return a step whose picture is as in a mirror, to draw cards over it that can be read."""
-    if step.picture is None:
-        return step
-    width = float(step.picture.shape[1])
-    picture = np.asarray(cv2.flip(step.picture, 1), np.uint8)
-    subjects = tuple(
-        (width - right, top, width - left, bottom) for left, top, right, bottom in step.subjects
-    )
-    return replace(step, picture=picture, subjects=subjects)
-
-
-def enlarge(step: Step, scale: float) -> Step:
-    """Return a step whose picture is larger, to draw cards over it that are sharp."""
-    if step.picture is None or scale == 1.0:
-        return step
-    height, width = step.picture.shape[:2]
-    size = round(width * scale), round(height * scale)
-    picture = np.asarray(cv2.resize(step.picture, size, interpolation=cv2.INTER_LINEAR), np.uint8)
-    subjects = tuple(
-        (scale * left, scale * top, scale * right, scale * bottom)
+def scaled_subjects(step: Step, scale: float, mirrored: bool) -> tuple[Rect, ...]:
+    """Return where subjects are in a picture that is shown larger, or as in a mirror."""
+    if not mirrored or step.picture is None:
+        return tuple(
+            (scale * left, scale * top, scale * right, scale * bottom)
+            for left, top, right, bottom in step.subjects
+        )
+    width = step.picture.shape[1]
+    return tuple(
+        (scale * (width - right), scale * top, scale * (width - left), scale * bottom)
         for left, top, right, bottom in step.subjects
     )
-    return replace(step, picture=picture, subjects=subjects)

@@ -88,7 +88,7 @@ class Undistorter:
             matrix = np.asarray(view.matrix, float)
             distortion = usable_distortion(view.distortion)
             frame_size = (image.shape[1], image.shape[0])
-            self._matrix, self._maps = self._make_maps(matrix, distortion, frame_size)
+            self._matrix, self._maps = self._make_maps(matrix, distortion, frame_size, view.part)
             self._camera_key = camera_key
             self._lens = matrix, distortion
         return self._matrix
@@ -157,12 +157,21 @@ class Undistorter:
         return np.asarray(cv2.cvtColor(self._undistorted_bgra, cv2.COLOR_BGRA2BGR), np.uint8)
 
     def _make_maps(
-        self, matrix: Array, distortion: Array, frame_size: tuple[int, int]
+        self,
+        matrix: Array,
+        distortion: Array,
+        frame_size: tuple[int, int],
+        part: tuple[float, float, float, float] | None,
     ) -> tuple[Array, Maps | None]:
         """Return the picture's matrix and, if it needs any, the maps from it to the frame."""
-        if not distortion.any() and frame_size == self._size:
+        if part is not None:
+            left, top, right, bottom = part
+            corner = np.array([[1.0, 0.0, -left], [0.0, 1.0, -top], [0.0, 0.0, 1.0]])
+            fitted = _fit((right - left, bottom - top), self._size) @ corner @ matrix
+        elif distortion.any() or frame_size != self._size:
+            fitted = _fit(frame_size, self._size) @ matrix
+        else:
             return matrix, None
-        fitted = _fit(frame_size, self._size) @ matrix
         columns, rows = cv2.initUndistortRectifyMap(
             matrix,
             distortion,
@@ -196,7 +205,7 @@ def _camera_key(view: CameraView) -> tuple[bytes, ...]:
     matrix = np.asarray(view.matrix, float)
     shape = None if view.image is None else view.image.shape[:2]
     distortion = usable_distortion(view.distortion)
-    return matrix.tobytes(), distortion.tobytes(), bytes(repr(shape), "ascii")
+    return matrix.tobytes(), distortion.tobytes(), bytes(repr((shape, view.part)), "ascii")
 
 
 def _same_picture(view: CameraView, other: CameraView) -> bool:
@@ -218,7 +227,7 @@ def _check(image: Image) -> Image:
     return image
 
 
-def _fit(frame_size: tuple[int, int], picture_size: tuple[int, int]) -> Array:
+def _fit(frame_size: tuple[float, float], picture_size: tuple[int, int]) -> Array:
     """Return the map of pixels (3, 3) that centres a whole frame in the picture, unstretched.
 
     >>> _fit((64, 48), (128, 96)) @ [-0.5, -0.5, 1]

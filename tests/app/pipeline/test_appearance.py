@@ -49,7 +49,7 @@ def last_view(source, seen, chosen, monkeypatch):
         def __getattr__(self, name):
             return lambda *given: None
 
-    monkeypatch.setattr(step_renderer, "_stage_of", Noting)
+    monkeypatch.setattr(step_renderer, "_stage", Noting)
     context = cast(moderngl.Context, object())
     playground = Playground(
         "follow", source.intrinsics, cube=source.cube, context=context, realism=chosen

@@ -15,6 +15,7 @@ from cubeling.app.pipeline.cube_window import (
 )
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step_renderer import CLOSE_UP_PX
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session.encoding import encode
 from cubeling.characters import ActionIntent, Character, CharacterCommand
@@ -271,6 +272,8 @@ def test_a_character_in_the_cube_leaves_nothing_on_the_table(source, frames):
     pixels = project(corners @ pose[:3, :3].T + pose[:3, 3], lens.matrix)
     assert (np.array([columns.min(), rows.min()]) > pixels.min(axis=0) - 2).all()
     assert (np.array([columns.max(), rows.max()]) < pixels.max(axis=0) + 2).all()
+    assert step.close_up.shape == (CLOSE_UP_PX, CLOSE_UP_PX, 3)
+    assert playing.step(frames[-1], Inputs(inside=True), drawn=False).close_up is None
     assert len(step.subjects) == 1  # cards need not avoid the place where it stood
     playing.close()
     stage.release()

@@ -12,8 +12,9 @@ from cubeling.app.ui.screen import NullScreen
 class Player(NullScreen):
     """Asks for what the script says: (after how many pictures, or "idle", a request).
 
-    "idle" is when nothing happens any more. Instead of a request there may be a function, which is
-    called with the player. At the end of the script, a player leaves when nothing happens.
+    "idle" is when nothing happens any more. `Inputs` are asked of the scenario.
+    Instead of a request there may be a function, which is called with the player. At the end of the
+    script, a player leaves when nothing happens.
     """
 
     attended = True
@@ -30,11 +31,13 @@ class Player(NullScreen):
         self.notices = []
         self.closed = False
         self._idle = 0
+        self._asked = Inputs()
 
     def show(self, step, robot):
         self.steps.append(step)
         self._idle = 0
-        return Inputs()
+        asked, self._asked = self._asked, Inputs()
+        return asked
 
     def preview(self, step, robot):
         self.previews.append(step.frame.index)
@@ -49,7 +52,9 @@ class Player(NullScreen):
         while self._script and self._is_due(self._script[0][0]):
             request = self._script.popleft()[1]
             made = request(self) if callable(request) else request
-            if made is not None:
+            if isinstance(made, Inputs):
+                self._asked = made
+            elif made is not None:
                 due.append(made)
             self._idle = 0
         return due

@@ -18,7 +18,7 @@ from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.runner import run
 from cubeling.app.running.summary import MAX_SAMPLES, Summary
 from cubeling.app.session import Recorder, SessionOptions, messages, session_info
-from cubeling.app.ui.cards.overlay import with_notice
+from cubeling.app.ui.cards.overlay import notice_card
 from cubeling.app.ui.notice import Notice, notice
 from cubeling.app.ui.screen import NullScreen
 from cubeling.tracking import TrackingError
@@ -243,14 +243,13 @@ def test_what_the_player_reads_fits_what_is_wrong(health, title):
     assert notice(RUNNING) is None
 
 
-def test_the_last_picture_stays_under_the_card_and_is_not_changed():
+def test_the_card_of_a_notice_lies_in_the_middle():
     picture = np.full((360, 640, 3), 100, np.uint8)
     words = notice(LOST)
     assert words is not None
-    shown = with_notice(picture, words)
-    assert (picture == 100).all()
-    assert (shown[0, 0] == 45).all()
-    assert shown[180, 320].min() > 200
+    notice_card(words, (640, 360)).blend_over(picture)
+    assert (picture[0, 0] == 100).all()
+    assert picture[180, 320].min() > 200
 
 
 def test_the_summary_names_drops_gaps_and_latency():

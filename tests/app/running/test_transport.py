@@ -9,10 +9,14 @@ import pytest
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running import runner
 from cubeling.app.running.opening import open_session
+from cubeling.app.running.playback.frame_feed import MAX_WAITING_S
+from cubeling.app.running.playback.saved_states import FIRST_INTERVAL_S
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, messages, session_info
+from cubeling.app.session.encoding import encode
 from cubeling.app.ui.playback.requests import MarkMoment, Pause, Record, Seek, SeekTo, StepFrames
 from cubeling.app.workshop.moods.robot_traces import read_robot_traces
 from cubeling.robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
@@ -93,6 +97,19 @@ def test_a_pipeline_that_cannot_be_copied_is_run_again_from_the_start(play, stra
     assert player.indices == [*range(20), 15, 16, *range(36, SHORT_FRAMES)]
     assert player.previews == [*range(15), *range(17, 36)], "nothing is seen on the way"
     assert player.messages() == {index: straight[index] for index in set(player.indices)}
+
+
+@pytest.mark.parametrize(
+    "acts", [((20, Inputs(clear=True)),), ((20, Record()), (24, Record()))], ids=["C", "R"]
+)
+def test_going_back_after_the_player_acted_is_as_short_and_shows_the_same(play, acts, monkeypatch):
+    monkeypatch.setattr(runner, "PREVIEW_INTERVAL_S", 0.0)
+    player = play(*acts, (40, SeekTo(1.2)), (42, SeekTo(0.5)), (44, leave), stage="camera")
+    assert player.indices == [*range(40), 36, 37, 15, 16]
+    assert len(player.previews) < 2 * 30 * FIRST_INTERVAL_S
+    again = player.messages()
+    for step in player.steps[36:38] + player.steps[15:17]:
+        assert again[step.frame.index] == [encode(each) for each in step.messages().values()]
 
 
 def test_single_frames_are_shown_while_it_is_paused(play, straight):
@@ -263,3 +280,34 @@ def test_a_pause_of_a_live_session_leaves_no_gap_and_keeps_the_robot(short_sessi
         "paused",
         "resumed",
     ]
+
+
+class HastyCamera(LiveSession):
+    """A live camera that has newer frames waiting, but for every fourth one."""
+
+    max_waiting = 1
+
+    def __init__(self, session):
+        super().__init__(session)
+        self.kept: list[int] = []
+
+    def wait(self, timeout, patience=None):
+        self.kept.append(self.max_waiting)
+        return super().wait(timeout, patience)
+
+    @property
+    def waiting(self):
+        return len(self.kept) % 4
+
+
+def test_a_recording_has_every_frame_of_a_camera_that_is_too_fast(short_session, tmp_path):
+    camera, player, path = HastyCamera(short_session), Player(), tmp_path / "out.mcap"
+    options = SessionOptions(
+        scenario="companion", source="camera:0", robot="none", record=path, pictures=False
+    )
+    with camera, open_session(options, source=camera, screen=player) as session:
+        summary = run(session)
+    assert set(camera.kept) == {round(MAX_WAITING_S * camera.rate)}
+    assert session_info(path).frames == summary.frames == 20
+    assert 4 <= len(player.steps) <= 8
+    assert session_parts.check(path, replace(options, source=str(path), record=None)).identical

@@ -146,10 +146,10 @@ def test_ctrl_c_while_channels_are_computed_leaves_nothing(
     monkeypatch.setattr("tempfile.tempdir", None)
     step, count = FrameLoop.step, iter(range(100))
 
-    def interrupted(self, frame):
+    def interrupted(self, frame, **settings):
         if next(count) == 5:
             raise KeyboardInterrupt
-        return step(self, frame)
+        return step(self, frame, **settings)
 
     monkeypatch.setattr(FrameLoop, "step", interrupted)
     code, out, _ = cubeling("export", "bare.mcap", "-o", "out")

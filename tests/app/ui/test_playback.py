@@ -1,5 +1,6 @@
 """Keys and mouse of the player, without a window: what they ask for, and what is shown."""
 
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import pytest
 
 from cubeling.app.output_path import dated_file, short_path
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.ui.cards.layout import HINT_ROOM
+from cubeling.app.ui.cards.hint_reader import HintReader
+from cubeling.app.ui.cards.layout import HINT_ROOM, are_apart
 from cubeling.app.ui.playback import timeline
 from cubeling.app.ui.playback.announcements import NOTICE_S
 from cubeling.app.ui.playback.cards import draw_pills
@@ -26,6 +28,7 @@ from cubeling.app.ui.playback.requests import (
     StartOver,
     WindowRequest,
 )
+from cubeling.app.ui.playback.scenario_card import ScenarioCard
 from cubeling.app.ui.playback.status import (
     EndCard,
     MenuChoice,
@@ -52,7 +55,12 @@ class Desk:
             for request in (WindowRequest.QUIT, WindowRequest.PANELS, WindowRequest.FULL_SCREEN)
         }
         self.layer = PlaybackLayer(
-            ("follow", "sketch"), folder, actions, lambda: self.time, lambda: NOW
+            ("follow", "sketch"),
+            folder,
+            actions,
+            lambda: PICTURE,
+            lambda: self.time,
+            lambda: NOW,
         )
 
     def report(self, **status):
@@ -64,7 +72,12 @@ class Desk:
             self.layer.press(name, shift=bool(shift))
 
     def shown(self):
-        return self.layer.draw(PICTURE)
+        cards = self.layer.cards((640, 360))
+        shown = np.zeros((360 + round(self.layer.strip_height / 2), 640, 3), np.uint8)
+        shown[:360] = PICTURE
+        for card in cards:
+            card.blend_over(shown)
+        return shown
 
 
 @pytest.fixture
@@ -215,7 +228,7 @@ def test_the_menu_chooses_by_key(desk):
     desk.shown()
     desk.report(choices=CHOICES[:1], looking=True)
     desk.report(choices=CHOICES)
-    desk.press("→", "↓", "Enter")
+    desk.press("→", "→", "↓", "Enter")
     assert desk.layer.take_requests() == (Choose("character", "human"),)
     desk.press("→")
     assert desk.layer.take_requests() == (Seek(5.0),), "the menu is still open"
@@ -226,14 +239,97 @@ def test_the_menu_chooses_by_mouse_and_closes_by_escape(desk):
     desk.report(choices=CHOICES)
     plain = desk.shown()
     desk.layer.take_requests()
-    # Three columns in the middle of the picture: the second row of the second one.
-    desk.layer.click(640.0, 392.0)
+    # Four columns in the middle of the picture: the second row of the third one.
+    desk.layer.click(750.0, 392.0)
     assert desk.layer.take_requests() == (Choose("character", "human"),)
     assert (desk.shown() != plain).any()
     desk.press("Tab", "Esc")
-    desk.layer.click(640.0, 392.0)
+    desk.layer.click(750.0, 392.0)
     assert desk.layer.take_requests() == (ListChoices(),)
     assert desk.asked == []
+
+
+def test_the_menu_lists_scenarios_too(desk):
+    desk.report()
+    desk.press("Tab", "↓", "Enter")
+    assert desk.layer.take_requests() == (ListChoices(),)
+    assert desk.layer.take_inputs() == Inputs(scenario="sketch")
+
+
+def test_a_scenario_is_chosen_by_its_picture(desk):
+    plain = desk.shown()
+    for choose in (lambda: desk.press("2"), lambda: desk.layer.click(800.0, 300.0)):
+        desk.press("0")
+        assert (desk.shown() != plain).mean() > 0.2
+        choose()
+        assert desk.layer.take_inputs() == Inputs(scenario="sketch")
+        np.testing.assert_array_equal(desk.shown(), plain)
+    for close in (lambda: desk.press("Esc"), lambda: desk.layer.click(20.0, 600.0)):
+        desk.press("0")
+        close()
+        np.testing.assert_array_equal(desk.shown(), plain)
+    assert desk.layer.take_inputs() == Inputs()
+    assert desk.asked == []
+
+
+@pytest.mark.parametrize("count", [1, 4, 5, 9])
+@pytest.mark.parametrize("width", [405.0, 960.0, 1280.0])
+def test_each_scenario_has_a_place_of_its_own_on_the_card(count, width):
+    card = ScenarioCard([f"scenario{number}" for number in range(count)])
+    places = np.mgrid[0:720:8, 0 : int(width) : 8].reshape(2, -1).T
+    found = {card.click(x, y, width) for y, x in places.tolist()}
+    assert found == {None, *range(1, count + 1)}
+    card.draw("scenario0", width, 1.0)  # those of broken packages, too
+
+
+def test_the_corner_has_buttons_for_keys_and_menu(desk):
+    plain = desk.shown()
+    desk.layer.click(1190.0, 42.0)
+    keys = desk.shown()
+    desk.layer.click(1190.0, 42.0)
+    np.testing.assert_array_equal(desk.shown(), plain)
+    desk.layer.click(1234.0, 42.0)
+    assert desk.layer.take_requests() == (ListChoices(),)
+    assert (desk.shown() != keys).any()
+
+
+def test_after_the_end_every_key_works_or_says_why_not(desk):
+    desk.report(ending=EndCard("The end"))
+    for key, asked in (("C", Inputs(clear=True)), ("2", Inputs(scenario="sketch"))):
+        desk.press(key)
+        assert desk.layer.take_requests() == (Pause(),), "it begins again"
+        assert desk.layer.take_inputs() == asked
+    desk.time += NOTICE_S + 1.0
+    before = desk.shown()
+    desk.press("I")
+    assert (desk.layer.take_requests(), desk.layer.take_inputs()) == ((), Inputs())
+    assert (desk.shown() != before).any()
+
+
+def test_a_notice_lies_over_no_card():
+    taken = (300.0, 60.0, 616.0, 362.0)
+    pills = draw_pills((("Recorded 12 s", None), ("Paused", None)), 960.0, 1.0, [taken])
+    assert [are_apart(pill.box(1.0), [taken]) for pill in pills] == [True, True]
+    assert pills[0].box(1.0)[3] < pills[1].box(1.0)[1]
+
+
+def test_a_hint_that_was_read_goes_while_the_cube_is_in_view(a_step):
+    reader, step = HintReader(), a_step(None)
+
+    def at(time, words="Move the cube", visible=True):
+        shown = replace(
+            step,
+            frame=replace(step.frame, timestamp=time),
+            state=replace(step.state, visible=visible),
+            outcome=replace(step.outcome, hint=words),
+        )
+        return reader.update(shown).outcome.hint
+
+    assert [at(time) for time in (0.0, 4.0, 6.0)] == ["Move the cube", "Move the cube", ""]
+    assert at(7.0, "Turn it") == "Turn it"
+    assert at(20.0, visible=False) == at(40.0, visible=False) == "Move the cube"
+    assert at(41.0) == "Move the cube"
+    assert at(60.0) == ""
 
 
 def test_what_goes_on_is_shown(desk):

@@ -8,25 +8,28 @@ from numpy.typing import NDArray
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import Record, Seek
 from cubeling.app.ui.window import Window
-from cubeling.app.ui.window.window import mirror
+from cubeling.app.ui.window.window import scaled_subjects
 from cubeling.tracking import open_source
 
 
 def pictures_of(window: Window, step: Step, robot: RobotView) -> NDArray[np.uint8]:
-    """Return the picture with its cards that a window shows of a step."""
-    window.show(step, robot)
-    assert window._picture is not None
-    return window._picture.copy()
+    """Return what a window shows of a step."""
+    for _ in range(2):  # both of the buffers that are swapped
+        window.show(step, robot)
+    screen = window.context.detect_framebuffer(0)
+    return np.frombuffer(screen.read(), np.uint8).reshape(*screen.size[::-1], 3)[::-1]
 
 
 def main(session: str) -> None:
     """Show the first frame of a session, press every key, and quit."""
     robot = RobotView("ready", 0.5, "happy")
-    with open_source(session) as source, Window(source.size) as window:
+    store = PreferenceStore(None, {"welcomed": True})
+    with open_source(session) as source, Window(source.size, preferences=store) as window:
         intrinsics = intrinsics_for(source.intrinsics, source.size)
         playground = Playground("companion", intrinsics, context=window.context)
         step = playground.step(next(iter(source)))
@@ -39,7 +42,8 @@ def main(session: str) -> None:
         assert screen.size == source.size
         np.testing.assert_array_equal(shown[::-1, :, ::-1], step.picture)
 
-        assert mirror(step).subjects[0][0] == source.size[0] - step.subjects[0][2]
+        (mirrored, *_) = scaled_subjects(step, 2.0, mirrored=True)
+        assert mirrored[0] == 2 * (source.size[0] - step.subjects[0][2])
         plain = pictures_of(window, step, robot)
         window.press(glfw.KEY_M)
         turned = pictures_of(window, step, robot)

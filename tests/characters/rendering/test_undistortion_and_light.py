@@ -54,6 +54,19 @@ def test_a_frame_of_another_size_is_scaled_with_its_matrix(view):
     assert middle[:2] == pytest.approx([319.5, 199.5])
 
 
+@pytest.mark.parametrize("distortion", [np.zeros(0), BENT], ids=["straight", "bent"])
+def test_a_part_of_the_frame_is_that_part_of_the_picture_magnified(view, distortion):
+    whole, magnified = Undistorter((320, 180)), Undistorter((128, 128))
+    smooth = replace(view, image=cv2.GaussianBlur(noise(3), (0, 0), 6), distortion=distortion)
+    part = replace(smooth, part=(100.0, 50.0, 164.0, 114.0))
+    picture = magnified.undistort(part)
+    expected = cv2.resize(whole.undistort(smooth)[50:114, 100:164], (128, 128))
+    inner = np.s_[4:-4, 4:-4]
+    np.testing.assert_allclose(picture[inner].astype(int), expected[inner].astype(int), atol=3)
+    corner = magnified.matrix_of(part) @ np.linalg.inv(smooth.matrix) @ [99.5, 49.5, 1.0]
+    assert corner[:2] == pytest.approx([-0.5, -0.5])
+
+
 def test_the_maps_are_computed_once_for_each_camera(view, monkeypatch):
     undistorter = Undistorter((320, 180))
     bent = replace(view, distortion=BENT)

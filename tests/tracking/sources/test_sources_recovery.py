@@ -296,6 +296,21 @@ def test_dropped_images_are_counted(bench, source):
     assert awaited(source, bench).image[0, 0, 0] == 4
 
 
+def test_images_that_are_kept_come_in_their_order(bench, source):
+    source.max_waiting = 3
+    for number in (2, 3, 4, 5):
+        bench.put(number)
+    bench.until(lambda: source.health.dropped == 1)
+    assert source.waiting == 3
+    assert [awaited(source, bench).image[0, 0, 0] for _ in range(3)] == [3, 4, 5]
+    for number in (6, 7):
+        bench.put(number)
+    bench.until(lambda: source.waiting == 2)
+    source.max_waiting = 1
+    assert source.health.dropped == 2
+    assert awaited(source, bench).image[0, 0, 0] == 7
+
+
 def test_an_old_frame_of_the_opening_gives_way_to_a_newer_one(bench):
     bench.put(1)
     with LiveSource(bench, "camera 0", bench.clock) as source:

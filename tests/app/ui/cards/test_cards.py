@@ -10,7 +10,7 @@ from hypothesis import example, given, strategies as st
 
 from cubeling.app.pipeline.step import RobotView
 from cubeling.app.ui.canvas import Card
-from cubeling.app.ui.cards.layout import CARD_MARGIN, CardLayout
+from cubeling.app.ui.cards.layout import CARD_MARGIN, SLIDING_S, CardLayout
 from cubeling.app.ui.cards.overlay import CARD_HEIGHT, overlay, virtual_robot_side
 from cubeling.characters import ActionIntent, LocomotionIntent
 from cubeling.characters.control.command import SpeechIntent
@@ -65,7 +65,7 @@ corners = st.tuples(st.floats(-0.1, 0.9), st.floats(-0.1, 0.9))
 FOLLOW = "Move the cube: I follow you"
 
 
-def test_cards_never_lie_over_each_other(a_step, monkeypatch):
+def test_cards_that_do_not_move_never_lie_over_each_other(a_step, monkeypatch):
     step, drawn = a_step(None), []
 
     def note(card, picture):
@@ -87,7 +87,9 @@ def test_cards_never_lie_over_each_other(a_step, monkeypatch):
     def check(height, aspect, hint, said, is_real, subjects):
         picture = np.broadcast_to(np.uint8(0), (height, round(aspect * height), 3))
         side = virtual_robot_side(height)
-        virtual: Any = SimpleNamespace(portrait=lambda _: np.zeros((side, side, 3), np.uint8))
+        virtual: Any = SimpleNamespace(
+            portrait=lambda _: np.zeros((side, side, 3), np.uint8), card=lambda _, draw: draw()
+        )
         robot, layout = RobotView("ready", 0.0, "neutral", is_real), CardLayout()
         speech = SpeechIntent(Utterance(said, "en", 1.0), 0.0)
         outcome = replace(step.outcome, hint=hint, command=replace(step.command, speech=speech))
@@ -100,9 +102,11 @@ def test_cards_never_lie_over_each_other(a_step, monkeypatch):
                 outcome=outcome,
                 subjects=((left, top, left + 0.3 * height, top + 0.3 * height),),
             )
-            drawn.clear()
             overlay(picture, shown, robot, virtual, layout)
-            assert len(drawn) == 3 + bool(said)
+            drawn.clear()
+            later = replace(shown, frame=replace(shown.frame, timestamp=3.0 * number + SLIDING_S))
+            overlay(picture, later, robot, virtual, layout)
+            assert len(drawn) == 2 + bool(hint) + bool(said)
             for a, b in combinations(drawn, 2):
                 assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
             assert all(y >= 0 and bottom <= height for _, y, _, bottom in drawn)
@@ -117,7 +121,9 @@ def test_cards_leave_the_middle_of_an_upright_picture_free(a_step):
         step, controls=replace(step.controls, camera_from_table=np.eye(4)), subjects=(subject,)
     )
     picture = np.zeros((720, 404, 3), np.uint8)
-    virtual: Any = SimpleNamespace(portrait=lambda _: np.zeros((180, 180, 3), np.uint8))
+    virtual: Any = SimpleNamespace(
+        portrait=lambda _: np.zeros((180, 180, 3), np.uint8), card=lambda _, draw: draw()
+    )
     overlay(picture, step, RobotView("ready", 0.0, "neutral"), virtual)
     assert picture.any()
     assert not picture[276:535].any()

@@ -9,7 +9,7 @@ import pytest
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import intrinsics_for
-from cubeling.app.ui.cards.layout import MIN_STAY_S, CardLayout, Corner, card_box
+from cubeling.app.ui.cards.layout import MIN_STAY_S, SLIDING_S, CardLayout, Corner, card_box
 from cubeling.tracking import open_source
 from tests.app import session_parts
 from tests.app.scripted import PICTURE_WIDTH, play_script
@@ -110,3 +110,18 @@ def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card(
         at_home.append([overlaps(home, CARDS[home], subjects) for home in CARDS])
     assert np.any(at_home, axis=1).mean() > 0.3  # cards that stay would hide something
     assert np.any(hidden, axis=1).mean() < 0.1
+
+
+def test_a_card_slides_to_its_corner_and_never_jumps():
+    layout = CardLayout()
+    near, far = (24.0, 588.0, 316.0, 696.0), (964.0, 24.0, 1256.0, 132.0)
+    assert layout.slide("bottom left", near, 0.0) == near[:2], "a new card is there at once"
+    times = np.arange(1.0, 1.0 + 2 * SLIDING_S, 1 / 60)
+    places = np.array([layout.slide("bottom left", far, time) for time in times])
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert (places[0], places[-1]) == (pytest.approx(near[:2]), pytest.approx(far[:2]))
+    assert steps.max() < 0.1 * np.linalg.norm(np.subtract(far[:2], near[:2]))
+    # Back again, from half way: it turns where it is.
+    layout.slide("bottom left", near, 5.0)
+    middle = layout.slide("bottom left", near, 5.0 + SLIDING_S / 2)
+    assert layout.slide("bottom left", far, 5.0 + SLIDING_S / 2) == middle
