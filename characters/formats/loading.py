@@ -39,7 +39,7 @@ class MotionOptions:
     """The file with the skeleton, for formats that keep it apart."""
 
     rate: float | None = None
-    """Frame rate [Hz], for formats that may not state it."""
+    """Frame rate [Hz], for formats that may not state it, or state it wrongly."""
 
     scale: float | None = None
     """Unit of length [m], for formats that do not state it."""
@@ -93,7 +93,7 @@ def load_motion(
     skeleton
         The .asf file of an .amc; left out, the one in the same folder.
     rate
-        Frame rate of an .amc [Hz]; left out, what it states, or 120.
+        Frame rate of a .bvh or .amc file [Hz]; left out, what it states, or 120 for an .amc.
     scale, up
         Unit [m] and vertical axis ("y", "z", "-y", …) of a .bvh or .amc file; left out, they
         are recognised, and `RecordedMotion.notes` says how.

@@ -45,6 +45,10 @@ def locomotion(
         str | None,
         typer.Option(help="Vertical axis of .bvh and .amc files: x, y, z, -x, -y or -z."),
     ] = None,
+    fps: Annotated[
+        float | None,
+        typer.Option(help="Frames a second of a .bvh or .amc file, if it states them wrongly."),
+    ] = None,
     rest: Annotated[
         str | None,
         typer.Option(
@@ -72,7 +76,7 @@ def locomotion(
     from cubeling.characters.model import load_recording, make_locomotion
 
     original = Character.load(character)
-    read = partial(load_recording, skeleton=skeleton, up=up, rest=rest)
+    read = partial(load_recording, skeleton=skeleton, up=up, rest=rest, rate=fps)
     walks, runs = ([read(name) for name in names or ()] for names in (walk, run))
     standing = read(idle) if idle else None
     result = make_locomotion(original, walks, runs, standing)
