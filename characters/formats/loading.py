@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.model.character import CHARACTER_READERS, conversion_advice
+from cubeling.characters.model.character import CHARACTER_READERS, conversion_advice, format_suffix
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.pose import Skeleton
 from cubeling.registry import Registry
@@ -104,7 +104,7 @@ def load_motion(
         If the file cannot be read, or does not have exactly that clip.
     """
     path = Path(path)
-    reader = MOTION_READERS.get(path.suffix.lower())
+    reader = MOTION_READERS.get(format_suffix(path))
     if reader is None:
         known = ", ".join(sorted(MOTION_READERS))
         advice = conversion_advice(path)
@@ -121,7 +121,7 @@ def load_motion(
 def is_motion_only(path: "str | Path") -> bool:
     """Return whether a file holds motions and no character: by its suffix, or without a mesh."""
     path = Path(path)
-    suffix = path.suffix.lower()
+    suffix = format_suffix(path)
     if suffix not in CHARACTER_READERS:
         return suffix in MOTION_READERS
     has_mesh = MESH_FINDERS.get(suffix)

@@ -26,6 +26,7 @@ from cubeling.characters.motion.motion import StandingMotion
 from cubeling.characters.motion.trees.plan import Plan
 from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.files import first_bytes
 from cubeling.registry import Registry
 
 if TYPE_CHECKING:
@@ -43,6 +44,9 @@ CHARACTER_WRITERS: "Registry[Callable[[Character, Path], None]]" = Registry(
     {".glb": "cubeling.characters.formats.gltf.writing:save"}
 )
 """Writers of a character by the suffix of the file."""
+
+_MAGIC = {b"glTF": ".glb"}
+"""How files of a format begin, with its suffix."""
 
 LENDERS: Mapping[str, str] = {"humanoid": "human", "quadruped": "vleo"}
 """Bundled characters that lend their motions to those without, by the kind of body."""
@@ -111,8 +115,8 @@ class Character:
             If there is no such character or file, or it is not a skinned glTF.
         """
         path, bundled = Path(name_or_path), Character.bundled_names()
-        reader = CHARACTER_READERS.get(path.suffix.lower())
-        if reader is not None:
+        reader = CHARACTER_READERS.get(format_suffix(path))
+        if reader is not None and str(name_or_path) not in bundled:
             return _with_sidecar(reader(path), path)
         if path.suffix or len(path.parts) > 1:
             raise CharacterError(
@@ -212,6 +216,15 @@ class Character:
     def length(self) -> float:
         """Length of the rest pose from front to back [m]."""
         return float(self.bounds[1, 2] - self.bounds[0, 2])
+
+
+def format_suffix(path: Path) -> str:
+    """Return the suffix of a file's format, in lower case: by its content if the name has none."""
+    suffix = path.suffix.lower()
+    if suffix in CHARACTER_READERS:
+        return suffix
+    begin = first_bytes(path, max(map(len, _MAGIC)))
+    return next((known for magic, known in _MAGIC.items() if begin.startswith(magic)), suffix)
 
 
 def conversion_advice(path: Path) -> str:
