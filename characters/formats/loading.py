@@ -56,6 +56,7 @@ MOTION_READERS = Registry[Callable[[Path, MotionOptions], RecordedMotion]](
         ".gltf": f"{_FORMATS}.gltf.reading:load_motion",
         ".vrm": f"{_FORMATS}.gltf.reading:load_motion",
         ".vrma": f"{_FORMATS}.gltf.reading:load_motion",
+        ".fbx": f"{_FORMATS}.fbx.reading:load_motion",
         ".bvh": f"{_FORMATS}.mocap.bvh:load_motion",
         ".amc": f"{_FORMATS}.mocap.amc:load_motion",
         ".asf": f"{_FORMATS}.mocap.asf:refuse_motion",
@@ -65,7 +66,11 @@ MOTION_READERS = Registry[Callable[[Path, MotionOptions], RecordedMotion]](
 """Readers of one motion, by the suffix of the file; a new format is registered here."""
 
 MESH_FINDERS = Registry[Callable[[Path], bool]](
-    dict.fromkeys((".glb", ".gltf"), f"{_FORMATS}.gltf.file:has_mesh")
+    {
+        ".glb": f"{_FORMATS}.gltf.file:has_mesh",
+        ".gltf": f"{_FORMATS}.gltf.file:has_mesh",
+        ".fbx": f"{_FORMATS}.fbx.reading:has_mesh",
+    }
 )
 """What finds out whether a file has a mesh, by the suffix of files that need not have one."""
 
@@ -79,7 +84,7 @@ def load_motion(
     scale: float | None = None,
     up: str | None = None,
 ) -> RecordedMotion:
-    """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf, .vrm or .vrma file.
+    """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf, .vrm, .vrma or .fbx file.
 
     Motion capture is returned in metres with +y up, with identity rest rotations. Its clips do
     not loop and have no root motion: the hips carry the motion over the ground.

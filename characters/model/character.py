@@ -34,9 +34,12 @@ if TYPE_CHECKING:
     from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 CHARACTER_READERS: "Registry[Callable[[Path], Character]]" = Registry(
-    dict.fromkeys(
-        (".glb", ".gltf", ".vrm"), "cubeling.characters.formats.gltf.reading:load_character"
-    )
+    {
+        **dict.fromkeys(
+            (".glb", ".gltf", ".vrm"), "cubeling.characters.formats.gltf.reading:load_character"
+        ),
+        ".fbx": "cubeling.characters.formats.fbx.reading:load_character",
+    }
 )
 """Readers of a character by the suffix of the file."""
 
@@ -45,7 +48,7 @@ CHARACTER_WRITERS: "Registry[Callable[[Character, Path], None]]" = Registry(
 )
 """Writers of a character by the suffix of the file."""
 
-_MAGIC = {b"glTF": ".glb"}
+_MAGIC = {b"glTF": ".glb", b"Kaydara FBX Binary": ".fbx"}
 """How files of a format begin, with its suffix."""
 
 LENDERS: Mapping[str, str] = {"humanoid": "human", "quadruped": "vleo"}
@@ -100,7 +103,7 @@ class Character:
 
     @staticmethod
     def load(name_or_path: "str | Path") -> "Character":
-        """Load a bundled character by its name, or a .glb, .gltf or .vrm file.
+        """Load a bundled character by its name, or a .glb, .gltf, .vrm or .fbx file.
 
         A .toml file of the same name next to it may add to it: see `characters.model.sidecar`.
 
@@ -112,7 +115,7 @@ class Character:
         Raises
         ------
         CharacterError
-            If there is no such character or file, or it is not a skinned glTF.
+            If there is no such character or file, or it is not a character.
         """
         path, bundled = Path(name_or_path), Character.bundled_names()
         reader = CHARACTER_READERS.get(format_suffix(path))
@@ -229,7 +232,7 @@ def format_suffix(path: Path) -> str:
 
 def conversion_advice(path: Path) -> str:
     """Return what turns a file of another kind into one that can be read."""
-    if path.suffix.lower() in (".fbx", ".blend", ".dae"):
+    if path.suffix.lower() in (".blend", ".dae"):
         return "open it in Blender and export it as .glb"
     return "convert it"
 

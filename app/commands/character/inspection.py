@@ -35,7 +35,7 @@ def inspect_command(
     character: Annotated[
         str,
         typer.Argument(
-            help="A bundled character, a .glb, .gltf or .vrm file, or a motion: .bvh or .amc."
+            help="A bundled character, a .glb, .gltf, .vrm or .fbx file, or a motion: .bvh or .amc."
         ),
     ],
     output: Annotated[

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Files = Annotated[
     list[str] | None,
-    typer.Option(help="A motion: .bvh, .amc, .vrma, or FILE.glb#CLIP; straight or curved."),
+    typer.Option(help="A motion: .bvh, .amc, .vrma, .fbx, or FILE.glb#CLIP; straight or curved."),
 ]
 
 

@@ -328,7 +328,7 @@ class _Checker:
                     self.check(value[member], inner, f"{place}.{member}")
 
     def _leave_out_invalid(self, holder: Any, key: str | int, kind: Any, place: str) -> None:
-        """Take out what is invalid in a member: items of a list, which become None, or all of it."""
+        """Take out what is invalid of a member: items of a list become None, else all of it."""
         items = holder[key]
         if isinstance(kind, list) and isinstance(items, list):
             for number in range(len(items)):

@@ -229,9 +229,12 @@ def _component(holder: Json) -> "np.dtype[np.generic]":
     return np.dtype(COMPONENT_TYPES[code]).newbyteorder("<")
 
 
-def open_gltf(path: Path) -> GltfFile:
-    """Read a .glb or .gltf file with its buffers; refuse extensions that are not supported."""
-    data = GLTF_FILE.read(path)
+def open_gltf(path: Path, content: bytes | None = None) -> GltfFile:
+    """Read a .glb or .gltf file with its buffers; refuse extensions that are not supported.
+
+    `content` is what a file of another format was converted to.
+    """
+    data = GLTF_FILE.read(path) if content is None else content
     text, blob = _unpack(path, data)
     try:
         document, left_out = parse(text)
@@ -279,7 +282,7 @@ def _advice(extension: str, path: Path, document: Json) -> str:
 
 
 def without_ktx(path: Path, document: Json) -> str:
-    """Return what makes a file have PNG textures instead of KTX2; the command unpacks meshes too."""
+    """Return what gives a file PNG textures instead of KTX2; the command unpacks meshes too."""
     if _states_vrm(document):
         return "export it with PNG, JPEG or WebP textures"
     return f"convert it: npx @gltf-transform/cli ktxdecompress {path.name} unpacked.glb"

@@ -29,9 +29,12 @@ from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Array, Skeleton
 
 
-def load_character(path: Path) -> Character:
-    """Read a character: a skinned one, or one of animated rigid parts."""
-    with _open(path) as file:
+def load_character(path: Path, content: bytes | None = None) -> Character:
+    """Read a character: a skinned one, or one of animated rigid parts.
+
+    `content` is what a file of another format was converted to.
+    """
+    with _open(path, content) as file:
         springs, constraints = read_springs(file), read_constraints(file)
         tree, humanoid = _read_joints(file, springs.nodes | constraints.nodes)
         table = read_morph_table(file, tree)
@@ -61,9 +64,9 @@ def load_character(path: Path) -> Character:
         )
 
 
-def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
+def load_motion(path: Path, options: MotionOptions, content: bytes | None = None) -> RecordedMotion:
     """Read one clip of a file and its skeleton; the file need not have a mesh."""
-    with _open(path) as file:
+    with _open(path, content) as file:
         tree, humanoid = _read_joints(file)
         table = read_morph_table(file, tree)
         skeleton = _with_rest_morphs(tree.skeleton, table.rest)
@@ -80,10 +83,10 @@ def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
 
 
 @contextmanager
-def _open(path: Path) -> Iterator[GltfFile]:
+def _open(path: Path, content: bytes | None) -> Iterator[GltfFile]:
     """Open a file; errors while it is read name it in one line."""
     try:
-        file = with_unpacked_meshes(open_gltf(path))
+        file = with_unpacked_meshes(open_gltf(path, content))
         if path.suffix.lower() == ".vrm" and read_humanoid(file) is None:
             file.warn("contains no VRM; read as plain glTF")
         yield file

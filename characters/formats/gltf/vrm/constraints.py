@@ -50,7 +50,7 @@ class VrmConstraints:
         return set(self.constraints) | {each.source for each in self.constraints.values()}
 
     def of_joints(self, file: GltfFile, tree: NodeTree) -> tuple[JointConstraint, ...]:
-        """Return them for the joints of a skeleton; none, with a warning, if they go in a circle."""
+        """Return them for the joints of a skeleton; none, with a warning, if they go in circles."""
         name_of = {node: tree.skeleton.names[joint] for node, joint in tree.joint_of_node.items()}
         found = tuple(
             JointConstraint(each.kind, name_of[node], name_of[each.source], each.axis, each.weight)
