@@ -102,7 +102,7 @@ def test_the_key_c_begins_again(play, hand):
 def test_an_action_that_the_character_lacks_is_named_before_play(rules):
     scenario = make_scenario(rules)
     check_actions(scenario, "me", ("wave", "nod", "cheer", "kiss"))
-    with pytest.raises(AppError, match=r"rule\[0\]\.do: me cannot 'wave'; its actions: nod, cheer"):
+    with pytest.raises(AppError, match=r"rule\[1\].do: me cannot 'wave'; its actions: nod, cheer"):
         check_actions(scenario, "me", ("nod", "cheer"))
 
 
