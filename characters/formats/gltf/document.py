@@ -337,7 +337,7 @@ class _Checker:
         try:
             self.check(holder[key], kind, place)
         except DamagedFileError as error:
-            if isinstance(holder, list):
+            if isinstance(key, int):
                 holder[key] = None  # other members count the items
             else:
                 del holder[key]
