@@ -31,7 +31,7 @@ def test_joints_skin_and_clip_are_in_metres_with_y_up(tmp_path):
     rest = skeleton.rest.globals(skeleton)
     np.testing.assert_allclose(rest[lower, :3, 3], [0, 0.3, 0], atol=1e-6)
     (mesh,) = character.meshes
-    np.testing.assert_allclose(character.bounds, [[0, 0, 0], [0.1, 0.6, 0]], atol=1e-6)
+    np.testing.assert_allclose(character.bounds, np.array([[0, 0, 0], [0.1, 0.6, 0]]), atol=1e-6)
     assert len(mesh.triangles) == 2
     np.testing.assert_array_equal(np.unique(mesh.joints[mesh.weights > 0]), [upper, lower])
     # A quarter turn about z of the file, which is y of glTF.

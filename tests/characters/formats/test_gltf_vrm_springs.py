@@ -151,8 +151,11 @@ def test_one_bad_collider_or_spring_costs_that_part_alone(load):
     assert len(caught) == 2
     assert bone.joint == "lock1"
     assert [each.radius for each in bone.colliders] == [ball["shape"]["sphere"]["radius"]]
-    groups = {"colliderGroups": [{"node": 1, "colliders": [{"radius": "x"}, {"radius": 0.1}]}]}
-    groups["boneGroups"] = [7, {"bones": [4], "colliderGroups": [0]}]
+    balls = [{"radius": "x"}, {"radius": 0.1}]
+    groups = {
+        "colliderGroups": [{"node": 1, "colliders": balls}],
+        "boneGroups": [7, {"bones": [4], "colliderGroups": [0]}],
+    }
     with pytest.warns(CharacterWarning, match="left it out"):
         first = load(VRM={"secondaryAnimation": groups}).springs[0]
     assert (first.joint, [each.radius for each in first.colliders]) == ("lock1", [0.1])
