@@ -113,6 +113,16 @@ def check_regular(path: str | Path, name: str, error: type[Exception]) -> None:
         raise _unreadable(path, name, reason, error)
 
 
+def first_bytes(path: str | Path, count: int) -> bytes:
+    """Return how a regular file begins, by which its format is known; b"" if it cannot be read."""
+    try:
+        check_regular(path, "file", OSError)
+        with _OpenFile(io.FileIO(path, opener=_open_at_once)) as file:
+            return file.read(count)
+    except OSError:
+        return b""
+
+
 def _unreadable(path: str | Path, name: str, reason: str, error: type[Exception]) -> Exception:
     return error(f"cannot read the {name} '{one_line(str(path))}': {reason}")
 

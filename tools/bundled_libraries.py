@@ -20,6 +20,7 @@ LICENCES = {
     "pyserial": "BSD-3-Clause",
     "reachy-mini": "Apache-2.0",
     "shellingham": "ISC",
+    "ufbx": "MIT",
 }
 """SPDX expressions of packages whose metadata has a sentence, a whole text or nothing instead."""
 

@@ -25,6 +25,7 @@ from cubeling.app.pipeline.scenario import (
     Outcome,
     Scenario,
     ScenarioSettings,
+    check_actions,
 )
 from cubeling.app.pipeline.scenario_errors import (
     check_outcome,
@@ -123,7 +124,8 @@ class Playground:
     Raises
     ------
     AppError
-        No scenario has that name, or `look` is not one of `LOOK_CHOICES`.
+        No scenario has that name, the character lacks an action that it asks for, or `look` is
+        not one of `LOOK_CHOICES`.
     CharacterError
         The character cannot be animated, or pictures of this size cannot be drawn.
     """
@@ -172,6 +174,7 @@ class Playground:
         cube = cube or CubeModel.load(scenario.cube)
         character = character or Character.load(scenario.character)
         animator = Animator(character, place=scenario.start, controller=self._controller)
+        check_actions(scenario, character.name, animator.actions)
         self.scenario, self.cube, self.character = scenario, cube, character
         self._tracker = CubeTracker(cube, self.intrinsics)
         self._gestures = CubeGestures(cube)
@@ -192,7 +195,7 @@ class Playground:
         Raises
         ------
         AppError
-            It lacks an action of the present one that the scenario asks for.
+            It lacks an action that the scenario asks for.
         CharacterError
             It cannot be animated.
         """
@@ -206,6 +209,7 @@ class Playground:
         missing = [role for role in asked if role not in animator.actions]
         if missing:
             raise AppError(f"{character.name} cannot {' or '.join(missing)}")
+        check_actions(self.scenario, character.name, animator.actions)
         self.character, self._animator = character, animator
         self._parts, self._body = BodyParts.of(character, animator.scale), None
         self._window.cast(character)

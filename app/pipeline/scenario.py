@@ -1,9 +1,11 @@
 """The interface of a scenario."""
 
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
 from cubeling.affect import Emotion, Personality
+from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import check_speed_map, check_turns
 from cubeling.app.pipeline.props import Thing
 from cubeling.app.pipeline.situation import Situation
@@ -134,6 +136,29 @@ class AdjustableScenario(Protocol):
     def adjust(self, settings: ScenarioSettings) -> None:
         """Play on with other settings."""
         ...
+
+
+@runtime_checkable
+class AskingScenario(Protocol):
+    """A scenario that knows from the beginning which actions it will ask for."""
+
+    asked: Mapping[str, str]
+    """The place that names each action, such as "my.toml: rule[0].do", by the action."""
+
+
+def check_actions(scenario: Scenario, character: str, known: Collection[str]) -> None:
+    """Refuse a character that lacks an action which the scenario will ask for.
+
+    Raises
+    ------
+    AppError
+        With the place that names the first such action.
+    """
+    asked = scenario.asked if isinstance(scenario, AskingScenario) else {}
+    for action, place in asked.items():
+        if action not in known:
+            listed = ", ".join(known) or "none"
+            raise AppError(f"{place}: {character} cannot '{action}'; its actions: {listed}")
 
 
 def missing_roles(scenario: type[Scenario], cube: CubeModel) -> list[str]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.model.character import CHARACTER_READERS, conversion_advice
+from cubeling.characters.model.character import CHARACTER_READERS, conversion_advice, format_suffix
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton.pose import Skeleton
 from cubeling.registry import Registry
@@ -39,7 +39,7 @@ class MotionOptions:
     """The file with the skeleton, for formats that keep it apart."""
 
     rate: float | None = None
-    """Frame rate [Hz], for formats that may not state it."""
+    """Frame rate [Hz], for formats that may not state it, or state it wrongly."""
 
     scale: float | None = None
     """Unit of length [m], for formats that do not state it."""
@@ -56,6 +56,7 @@ MOTION_READERS = Registry[Callable[[Path, MotionOptions], RecordedMotion]](
         ".gltf": f"{_FORMATS}.gltf.reading:load_motion",
         ".vrm": f"{_FORMATS}.gltf.reading:load_motion",
         ".vrma": f"{_FORMATS}.gltf.reading:load_motion",
+        ".fbx": f"{_FORMATS}.fbx.reading:load_motion",
         ".bvh": f"{_FORMATS}.mocap.bvh:load_motion",
         ".amc": f"{_FORMATS}.mocap.amc:load_motion",
         ".asf": f"{_FORMATS}.mocap.asf:refuse_motion",
@@ -65,7 +66,11 @@ MOTION_READERS = Registry[Callable[[Path, MotionOptions], RecordedMotion]](
 """Readers of one motion, by the suffix of the file; a new format is registered here."""
 
 MESH_FINDERS = Registry[Callable[[Path], bool]](
-    dict.fromkeys((".glb", ".gltf"), f"{_FORMATS}.gltf.file:has_mesh")
+    {
+        ".glb": f"{_FORMATS}.gltf.file:has_mesh",
+        ".gltf": f"{_FORMATS}.gltf.file:has_mesh",
+        ".fbx": f"{_FORMATS}.fbx.reading:has_mesh",
+    }
 )
 """What finds out whether a file has a mesh, by the suffix of files that need not have one."""
 
@@ -79,7 +84,7 @@ def load_motion(
     scale: float | None = None,
     up: str | None = None,
 ) -> RecordedMotion:
-    """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf, .vrm or .vrma file.
+    """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf, .vrm, .vrma or .fbx file.
 
     Motion capture is returned in metres with +y up, with identity rest rotations. Its clips do
     not loop and have no root motion: the hips carry the motion over the ground.
@@ -93,7 +98,7 @@ def load_motion(
     skeleton
         The .asf file of an .amc; left out, the one in the same folder.
     rate
-        Frame rate of an .amc [Hz]; left out, what it states, or 120.
+        Frame rate of a .bvh or .amc file [Hz]; left out, what it states, or 120 for an .amc.
     scale, up
         Unit [m] and vertical axis ("y", "z", "-y", …) of a .bvh or .amc file; left out, they
         are recognised, and `RecordedMotion.notes` says how.
@@ -104,7 +109,7 @@ def load_motion(
         If the file cannot be read, or does not have exactly that clip.
     """
     path = Path(path)
-    reader = MOTION_READERS.get(path.suffix.lower())
+    reader = MOTION_READERS.get(format_suffix(path))
     if reader is None:
         known = ", ".join(sorted(MOTION_READERS))
         advice = conversion_advice(path)
@@ -121,7 +126,7 @@ def load_motion(
 def is_motion_only(path: "str | Path") -> bool:
     """Return whether a file holds motions and no character: by its suffix, or without a mesh."""
     path = Path(path)
-    suffix = path.suffix.lower()
+    suffix = format_suffix(path)
     if suffix not in CHARACTER_READERS:
         return suffix in MOTION_READERS
     has_mesh = MESH_FINDERS.get(suffix)

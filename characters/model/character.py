@@ -26,6 +26,7 @@ from cubeling.characters.motion.motion import StandingMotion
 from cubeling.characters.motion.trees.plan import Plan
 from cubeling.characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.files import first_bytes
 from cubeling.registry import Registry
 
 if TYPE_CHECKING:
@@ -33,9 +34,12 @@ if TYPE_CHECKING:
     from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 CHARACTER_READERS: "Registry[Callable[[Path], Character]]" = Registry(
-    dict.fromkeys(
-        (".glb", ".gltf", ".vrm"), "cubeling.characters.formats.gltf.reading:load_character"
-    )
+    {
+        **dict.fromkeys(
+            (".glb", ".gltf", ".vrm"), "cubeling.characters.formats.gltf.reading:load_character"
+        ),
+        ".fbx": "cubeling.characters.formats.fbx.reading:load_character",
+    }
 )
 """Readers of a character by the suffix of the file."""
 
@@ -43,6 +47,9 @@ CHARACTER_WRITERS: "Registry[Callable[[Character, Path], None]]" = Registry(
     {".glb": "cubeling.characters.formats.gltf.writing:save"}
 )
 """Writers of a character by the suffix of the file."""
+
+_MAGIC = {b"glTF": ".glb", b"Kaydara FBX Binary": ".fbx"}
+"""How files of a format begin, with its suffix."""
 
 LENDERS: Mapping[str, str] = {"humanoid": "human", "quadruped": "vleo"}
 """Bundled characters that lend their motions to those without, by the kind of body."""
@@ -96,7 +103,7 @@ class Character:
 
     @staticmethod
     def load(name_or_path: "str | Path") -> "Character":
-        """Load a bundled character by its name, or a .glb, .gltf or .vrm file.
+        """Load a bundled character by its name, or a .glb, .gltf, .vrm or .fbx file.
 
         A .toml file of the same name next to it may add to it: see `characters.model.sidecar`.
 
@@ -108,11 +115,11 @@ class Character:
         Raises
         ------
         CharacterError
-            If there is no such character or file, or it is not a skinned glTF.
+            If there is no such character or file, or it is not a character.
         """
         path, bundled = Path(name_or_path), Character.bundled_names()
-        reader = CHARACTER_READERS.get(path.suffix.lower())
-        if reader is not None:
+        reader = CHARACTER_READERS.get(format_suffix(path))
+        if reader is not None and str(name_or_path) not in bundled:
             return _with_sidecar(reader(path), path)
         if path.suffix or len(path.parts) > 1:
             raise CharacterError(
@@ -214,9 +221,18 @@ class Character:
         return float(self.bounds[1, 2] - self.bounds[0, 2])
 
 
+def format_suffix(path: Path) -> str:
+    """Return the suffix of a file's format, in lower case: by its content if the name has none."""
+    suffix = path.suffix.lower()
+    if suffix in CHARACTER_READERS:
+        return suffix
+    begin = first_bytes(path, max(map(len, _MAGIC)))
+    return next((known for magic, known in _MAGIC.items() if begin.startswith(magic)), suffix)
+
+
 def conversion_advice(path: Path) -> str:
     """Return what turns a file of another kind into one that can be read."""
-    if path.suffix.lower() in (".fbx", ".blend", ".dae"):
+    if path.suffix.lower() in (".blend", ".dae"):
         return "open it in Blender and export it as .glb"
     return "convert it"
 

@@ -19,6 +19,7 @@ MANY_JOINTS, MANY_TRIANGLES, LARGE_TEXTURE_PX = 256, 100_000, 4096
 PLAUSIBLE_HEIGHT_M = 0.05, 30.0
 """Heights of characters, from mice to dinosaurs."""
 
+_HEAD_PARTS = {"neck", "head", "jaw", "leftEye", "rightEye"}
 _MAX_LOOP_GAP = 0.03  # body heights
 _MIN_SPEED = 0.15  # body heights per second; slower bodies stand
 _GAIT_NAME = re.compile("walk|run|jog|trot|gallop|stroll", re.IGNORECASE)
@@ -130,7 +131,7 @@ def inspect(character: Character, notes: Sequence[str] = (), body: bool = True) 
     problems = [
         *notes,
         *(_problems_of_meshes(character, stats) if body else ()),
-        *_problems_of_joints(character, feet),
+        *(_problems_of_joints(character, feet) if not _is_head(character) else ()),
         *_problems_of_clips(character, clips),
     ]
     return Inspection(character, stats, clips, tuple(problems))
@@ -190,12 +191,20 @@ def _problems_of_joints(character: Character, feet: dict[str, tuple[int, ...]]) 
             yield "At rest its head is below its feet: rotate it in its file so that +y is up."
 
 
+def _is_head(character: Character) -> bool:
+    """Return whether a character is a head alone: no limb is found, and its face has morphs."""
+    parts = set(character.anatomy.joints)
+    return bool(parts) and parts <= _HEAD_PARTS and bool(character.morphs)
+
+
 def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iterator[str]:
     if character.lender is not None:
         yield (
             f"It has no motions of its own: it plays those of the bundled {character.lender}, "
             "retargeted; --own-motions-only leaves them out."
         )
+    elif not clips and _is_head(character):
+        yield "It is a head: it speaks, looks around and shows moods, and does not walk."
     elif not clips:
         yield "It has no clips: it can be posed and retargeted to, but plays nothing by itself."
     static = [stats.clip.name for stats in clips if stats.clip.duration == 0.0]

@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -47,6 +47,27 @@ class _Switch:
         return self.state == state or (self.below is not None and self.below.plays(state))
 
 
+@dataclass(frozen=True)
+class _States(Mapping[str, Motion]):
+    """Motions by name, of which the others are not asked for before they are needed."""
+
+    first: Mapping[str, Motion]
+    others: Mapping[str, Motion]
+
+    def __getitem__(self, name: str) -> Motion:
+        return self.first[name] if name in self.first else self.others[name]
+
+    def __iter__(self) -> Iterator[str]:
+        yield from self.first
+        yield from (name for name in self.others if name not in self.first)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.first or name in self.others
+
+
 class StateMachine:
     """Named motions and the times at which they were entered; a `Motion`.
 
@@ -62,6 +83,8 @@ class StateMachine:
         Name of the state that is entered at time 0.
     length
         Length of a transition by inertialization [s].
+    others
+        More motions by name, which may be made when they are first asked for.
 
     Raises
     ------
@@ -69,8 +92,14 @@ class StateMachine:
         If there is no state of the initial name.
     """
 
-    def __init__(self, states: Mapping[str, Motion], initial: str, length: float = 0.25) -> None:
-        self.states = dict(states)
+    def __init__(
+        self,
+        states: Mapping[str, Motion],
+        initial: str,
+        length: float = 0.25,
+        others: Mapping[str, Motion] | None = None,
+    ) -> None:
+        self.states: Mapping[str, Motion] = _States(dict(states), others or {})
         self.length = length
         """Length of a transition [s]."""
         self._check(initial)

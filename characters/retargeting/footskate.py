@@ -265,9 +265,10 @@ def _on_soles(
 def _turn_smoothly(turns: Array, wanted: Array, ground: GroundMotion) -> Array:
     """Return turns (frames, 4) that go to the wanted ones by a change that is smooth in time."""
     change = rotations.multiply(wanted, rotations.conjugate(turns))
-    vectors = ground.repeat(rotations.to_rotation_vector(change))
+    # The next cycle of a curve looks another way: its axes of rotation do too.
+    vectors = ground.directions_to_ground(rotations.to_rotation_vector(change))
     vectors = gaussian_smooth(vectors, _TILT_SMOOTHING_S * ground.rate)
-    smooth = rotations.from_rotation_vector(ground.middle_cycle(vectors))
+    smooth = rotations.from_rotation_vector(ground.directions_from_ground(vectors))
     return rotations.multiply(smooth, turns)
 
 

@@ -51,9 +51,18 @@ class GroundMotion:
 
     def directions_to_ground(self, directions: Array) -> Array:
         """Return directions (frames, 3) over the ground, for three cycles of a loop."""
+        return self._turning.to_ground(directions)
+
+    def directions_from_ground(self, directions: Array) -> Array:
+        """Return the clip's own directions (frames, 3) from those over the ground."""
+        return self._turning.from_ground(directions)
+
+    @property
+    def _turning(self) -> "GroundMotion":
+        """The same motion without its way."""
         yaw_only = np.array([0.0, 0.0, 1.0])
         cycle = None if self.cycle is None else self.cycle * yaw_only
-        return GroundMotion(self.frame_poses * yaw_only, cycle, self.rate).to_ground(directions)
+        return GroundMotion(self.frame_poses * yaw_only, cycle, self.rate)
 
     def repeat(self, values: NDArray[_T]) -> NDArray[_T]:
         """Return values (frames, …) that do not depend on position for three cycles of a loop."""

@@ -46,6 +46,7 @@ def load_recording(
     *,
     up: str | None = None,
     rest: str | None = None,
+    rate: float | None = None,
 ) -> Recording:
     """Read a motion: a .bvh, .amc or .vrma file, a .glb without a mesh, or a character's clip.
 
@@ -64,6 +65,9 @@ def load_recording(
         The rest pose of a motion without a body: "zero" or "frame:N"; left out, the zero pose if
         it stands, else the most upright frame.
 
+    rate
+        Frame rate of a .bvh or .amc file [Hz]; left out, what it states.
+
     Raises
     ------
     CharacterError
@@ -71,9 +75,8 @@ def load_recording(
     """
     file, _, clip = name.partition("#")
     if is_motion_only(file):
-        return _of_recorded_motion(
-            name, load_motion(file, clip or None, skeleton=skeleton, up=up), rest
-        )
+        motion = load_motion(file, clip or None, skeleton=skeleton, rate=rate, up=up)
+        return _of_recorded_motion(name, motion, rest)
     character = Character.load(file)
     if not clip and len(character.clips) == 1:
         clip = next(iter(character.clips))

@@ -82,6 +82,16 @@ class RuleSet:
         )
 
     @property
+    def asked(self) -> dict[str, str]:
+        """The actions of the character that the rules ask for, with the place of the first."""
+        found: dict[str, str] = {}
+        for index, rule in enumerate(self.rules):
+            for key, text in rule.actions:
+                if key == "do" and text not in ("idle", "move"):
+                    found.setdefault(text, f"{self.name}: rule[{index}].do")
+        return found
+
+    @property
     def lines(self) -> dict[str, tuple[str, ...]]:
         """What is said, by the event that a rule makes when it begins to act."""
         return {event_of(index): rule.say for index, rule in enumerate(self.rules) if rule.say}

@@ -1,11 +1,11 @@
 """A scenario that a file of rules describes."""
 
+from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
 
 from cubeling.affect import Personality
-from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.pipeline.situation import Situation
 from cubeling.app.scenarios.mood import MoodController
@@ -35,6 +35,9 @@ class RulesScenario:
 
     rules: ClassVar[RuleSet]
     """What the file says."""
+
+    asked: ClassVar[Mapping[str, str]]
+    """See `AskingScenario`."""
 
     name: str
     summary: str
@@ -78,7 +81,6 @@ class RulesScenario:
         if self._acting is not None:
             for key, text in self.rules.rules[self._acting].actions:
                 ACTIONS[key].perform(intent, text)
-        self._check_action(intent.action, situation)
         events: tuple[str, ...] = ()
         if self._acting is not None and (begun or self._acting != before):
             events = (event_of(self._acting),)
@@ -117,12 +119,6 @@ class RulesScenario:
         now = moment.controls.timestamp
         return now - self._since.setdefault(index, now) >= rule.after
 
-    def _check_action(self, name: str, situation: Situation) -> None:
-        """Refuse an action that the character does not know; before its first frame, none is."""
-        if name != "idle" and situation.actions and name not in situation.actions:
-            known = ", ".join(situation.actions)
-            raise AppError(f"{self.name}: the character cannot '{name}'; it knows {known}")
-
 
 def _way(intent: Intent, moment: Moment) -> LocomotionIntent:
     """Return where an intent lets the character go, and that it faces the player when it stands."""
@@ -144,6 +140,7 @@ def rules_scenario(path: str) -> type[RulesScenario]:
         "__module__": __name__,
         "__doc__": rules.summary,
         "rules": rules,
+        "asked": rules.asked,
         "name": rules.name,
         "summary": rules.summary,
         "cube": rules.cube,

@@ -1,6 +1,6 @@
 """Actions: what a character can perform besides standing and walking, at any intensity."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from cubeling.characters.control.command import ActionIntent
 from cubeling.characters.errors import CharacterError
@@ -90,14 +90,34 @@ def clips_of_actions(
     return actions
 
 
-def actions_of(character: Character, besides: Iterable[str] = ()) -> dict[str, ActionMotion]:
-    """Return the actions of a character by name; see `clips_of_actions`."""
-    actions: dict[str, ActionMotion] = {}
-    for action, names in clips_of_actions(character.clips, besides).items():
-        clips = [character.clips[name] for name in names.values()]
-        space = BlendSpace1D(tuple(names), tuple(PhasedMotion(clip) for clip in clips))
-        actions[action] = ActionMotion(action, space, once=not any(clip.loop for clip in clips))
-    return actions
+class Actions(Mapping[str, ActionMotion]):
+    """The actions of a character by name; see `clips_of_actions`.
+
+    One is made when it is first played: clips that are lent are retargeted when they are asked for.
+    """
+
+    def __init__(self, character: Character, besides: Iterable[str] = ()) -> None:
+        self._clips = character.clips
+        self._names = clips_of_actions(character.clips, besides)
+        self._made: dict[str, ActionMotion] = {}
+
+    def __getitem__(self, action: str) -> ActionMotion:
+        if action not in self._made:
+            names = self._names[action]
+            clips = [self._clips[name] for name in names.values()]
+            space = BlendSpace1D(tuple(names), tuple(PhasedMotion(clip) for clip in clips))
+            once = not any(clip.loop for clip in clips)
+            self._made[action] = ActionMotion(action, space, once)
+        return self._made[action]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __contains__(self, action: object) -> bool:
+        return action in self._names  # a Mapping's own would make the action
 
 
 def next_action(

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from cubeling.characters.control.command import CharacterCommand, LocomotionIntent
-from cubeling.characters.control.controllers.actions import WEIGHT_LAG_S, actions_of, next_action
+from cubeling.characters.control.controllers.actions import WEIGHT_LAG_S, Actions, next_action
 from cubeling.characters.control.controllers.controller import ControllerFrame
 from cubeling.characters.control.controllers.feet_in_transition import FeetInTransition
 from cubeling.characters.model.character import Character
@@ -51,11 +51,10 @@ class InPlaceController:
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         self._place = place or RootDelta()
         self._height = self._weight = 0.0
-        self._actions = actions_of(character)
+        self._actions = Actions(character)
         self._standing = character.stand()
         idle = self._standing or _idle(character)
-        states: dict[str, Motion] = {"idle": idle, **self._actions}
-        self._machine = StateMachine(states, "idle")
+        self._machine = StateMachine({"idle": idle}, "idle", others=self._actions)
         self._feet = FeetInTransition(character)
         self._state = "idle"
         self._time = 0.0

@@ -11,7 +11,7 @@ from cubeling.characters.control.command import CharacterCommand, LocomotionInte
 from cubeling.characters.control.controllers.actions import (
     WEIGHT_LAG_S,
     ActionMotion,
-    actions_of,
+    Actions,
     next_action,
 )
 from cubeling.characters.control.controllers.controller import ControllerFrame
@@ -81,13 +81,10 @@ class MatchingController:
         self._scale, self._height = scale, character.height
         self.motion = MatchedMotion(self.database, self.database.stillest)
         """What is matched."""
-        self._actions = actions_of(character, NOT_ACTIONS)
-        self._machine = StateMachine({"idle": self.motion, **self._actions}, "idle")
-        feet = find_feet(character.skeleton)
-        self._contacts = {
-            name: find_contacts(action.clip, character.skeleton, feet).tolist()
-            for name, action in self._actions.items()
-        }
+        self._actions = Actions(character, NOT_ACTIONS)
+        self._machine = StateMachine({"idle": self.motion}, "idle", others=self._actions)
+        self._skeleton = character.skeleton
+        self._contacts: dict[str, list[list[bool]]] = {}
         self._time = self._weight = 0.0
         self._finished = ""
         self._impulse = Impulse()
@@ -147,7 +144,11 @@ class MatchingController:
         action = self._actions.get(self._machine.state)
         if action is None:
             return self.database.feet_down(self.motion.legs(spent))
-        contacts, phase = self._contacts[self._machine.state], action.phase(spent)
+        state, phase = self._machine.state, action.phase(spent)
+        if state not in self._contacts:
+            feet = find_feet(self._skeleton)
+            self._contacts[state] = find_contacts(action.clip, self._skeleton, feet).tolist()
+        contacts = self._contacts[state]
         frame = int((phase if phase == 1.0 else phase % 1.0) * (len(contacts) - 1))
         down: list[bool] = contacts[frame]
         return down

@@ -6,7 +6,7 @@ from cubeling.characters.control.command import CharacterCommand
 from cubeling.characters.control.controllers.actions import (
     WEIGHT_LAG_S,
     ActionMotion,
-    actions_of,
+    Actions,
     next_action,
 )
 from cubeling.characters.control.controllers.controller import ControllerFrame
@@ -60,9 +60,11 @@ class WalkController:
         self._motion = self.gaits.at(IDLE_SPEED, 0.0)
         self._strides = RetimedMotion(self._motion)
         self._first_phase = self.gaits.first_phase
-        self._actions = actions_of(character, NOT_ACTIONS)
+        self._actions = Actions(character, NOT_ACTIONS)
         self._finished = ""
-        self._machine = StateMachine({"idle": idle, "move": self._strides, **self._actions}, "idle")
+        self._machine = StateMachine(
+            {"idle": idle, "move": self._strides}, "idle", others=self._actions
+        )
         self._time = 0.0
         self._weight = 0.0
         self._feet = 0 if self.gaits.legs is None else len(self.gaits.legs.feet)

@@ -2,8 +2,9 @@
 
 import json
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -36,7 +37,7 @@ _TEXTURE = {
     },
 }
 _BINDS = {"index!": COUNT, "weight!": REAL}
-_EXPRESSION = {"morphTargetBinds": [{"node!": "nodes"} | _BINDS]}
+_EXPRESSION = {"morphTargetBinds?": [{"node!": "nodes"} | _BINDS]}
 _XYZ = {"x": REAL, "y": REAL, "z": REAL}
 _SPHERE = {"offset": _NUMBER_LISTS[3], "radius": REAL}
 _SPRING = {"stiffness": REAL, "gravityPower": REAL, "dragForce": REAL, "hitRadius": REAL}
@@ -59,7 +60,7 @@ SCHEMA: Json = {
             "matrix": _NUMBER_LISTS[16],
             "weights": _ANY_NUMBER_LIST,
             "extensions": {
-                "VRMC_node_constraint": {
+                "VRMC_node_constraint?": {
                     "constraint!": {
                         "roll": _CONSTRAINT | {"rollAxis!": TEXT},
                         "aim": _CONSTRAINT | {"aimAxis!": TEXT},
@@ -111,7 +112,15 @@ SCHEMA: Json = {
     ],
     "buffers": [{"uri": TEXT, "byteLength!": COUNT}],
     "images": [{"uri": TEXT, "bufferView": "bufferViews", "name": TEXT}],
-    "textures": [{"source": "images", "extensions": {"EXT_texture_webp": {"source": "images"}}}],
+    "textures": [
+        {
+            "source": "images",
+            "extensions": {
+                "EXT_texture_webp": {"source": "images"},
+                "KHR_texture_basisu": {"source": "images"},
+            },
+        }
+    ],
     "materials": [
         {
             "name": TEXT,
@@ -130,7 +139,7 @@ SCHEMA: Json = {
             "doubleSided": FLAG,
             "extensions": {
                 "KHR_materials_emissive_strength": {"emissiveStrength": REAL},
-                "VRMC_materials_mtoon": {
+                "VRMC_materials_mtoon?": {
                     "shadeColorFactor": _NUMBER_LISTS[3],
                     "shadeMultiplyTexture": _TEXTURE,
                     "shadingShiftFactor": REAL,
@@ -151,9 +160,9 @@ SCHEMA: Json = {
     "extensions": {
         "VRMC_vrm": {
             "specVersion": TEXT,
-            "humanoid": {"humanBones": {"*": {"node!": "nodes"}}},
-            "expressions": {"preset": {"*": _EXPRESSION}, "custom": {"*": _EXPRESSION}},
-            "lookAt": {
+            "humanoid": {"humanBones": {"*?": {"node!": "nodes"}}},
+            "expressions?": {"preset": {"*?": _EXPRESSION}, "custom": {"*?": _EXPRESSION}},
+            "lookAt?": {
                 "type": TEXT,
                 "offsetFromHeadBone": _NUMBER_LISTS[3],
                 "rangeMapHorizontalInner": _RANGE,
@@ -166,8 +175,8 @@ SCHEMA: Json = {
             "specVersion": TEXT,
             "humanoid": {"humanBones": {"*": {"node!": "nodes"}}},
         },
-        "VRMC_springBone": {
-            "colliders": [
+        "VRMC_springBone?": {
+            "colliders?": [
                 {
                     "node!": INTEGER,
                     "shape!": {
@@ -176,8 +185,8 @@ SCHEMA: Json = {
                     },
                 }
             ],
-            "colliderGroups": [{"colliders": [INTEGER]}],
-            "springs": [
+            "colliderGroups?": [{"colliders": [INTEGER]}],
+            "springs?": [
                 {
                     "joints": [
                         {"node!": "nodes", "gravityDir": _NUMBER_LISTS[3]} | _SPRING,
@@ -188,13 +197,13 @@ SCHEMA: Json = {
             ],
         },
         "VRM": {
-            "humanoid": {"humanBones": [{"bone!": TEXT, "node!": "nodes"}]},
-            "blendShapeMaster": {
-                "blendShapeGroups": [
-                    {"name": TEXT, "presetName": TEXT, "binds": [{"mesh!": "meshes"} | _BINDS]}
+            "humanoid": {"humanBones?": [{"bone!": TEXT, "node!": "nodes"}]},
+            "blendShapeMaster?": {
+                "blendShapeGroups?": [
+                    {"name": TEXT, "presetName": TEXT, "binds?": [{"mesh!": "meshes"} | _BINDS]}
                 ]
             },
-            "firstPerson": {
+            "firstPerson?": {
                 "lookAtTypeName": TEXT,
                 "firstPersonBoneOffset": _XYZ,
                 "lookAtHorizontalInner": _RANGE_0,
@@ -202,8 +211,8 @@ SCHEMA: Json = {
                 "lookAtVerticalDown": _RANGE_0,
                 "lookAtVerticalUp": _RANGE_0,
             },
-            "secondaryAnimation": {
-                "boneGroups": [
+            "secondaryAnimation?": {
+                "boneGroups?": [
                     {
                         "stiffiness": REAL,  # spelt like this in VRM 0.x
                         "gravityPower": REAL,
@@ -215,11 +224,11 @@ SCHEMA: Json = {
                         "colliderGroups": [INTEGER],
                     }
                 ],
-                "colliderGroups": [
-                    {"node": INTEGER, "colliders": [{"offset": _XYZ, "radius": REAL}]}
+                "colliderGroups?": [
+                    {"node": INTEGER, "colliders?": [{"offset": _XYZ, "radius": REAL}]}
                 ],
             },
-            "materialProperties": [
+            "materialProperties?": [
                 {
                     "shader": TEXT,
                     "floatProperties": {
@@ -235,24 +244,29 @@ SCHEMA: Json = {
     },
 }
 """The members that are read: an object, [a list] or the kind of a value. The name of a top-level
-list stands for an index into it, "*" for any key; "!" marks required members."""
+list stands for an index into it, "*" for any key; "!" marks required members, and "?" those that
+a character can do without: items of their lists are None where they are invalid, others absent."""
 
 
-def parse(text: bytes) -> Json:
-    """Return the document in a JSON text; a text that is no glTF raises another ValueError."""
+def parse(text: bytes) -> tuple[Json, list[str]]:
+    """Return the document in a JSON text, and what is wrong with members that are left out.
+
+    A text that is no glTF raises another ValueError than `DamagedFileError`.
+    """
     document = json.loads(text, parse_constant=_refuse_constant)
     if not isinstance(document, dict) or not isinstance(document.get("asset"), dict):
         raise ValueError("not a glTF")
     sizes = {key: len(v) for key, v in document.items() if isinstance(v, list)}
+    checker = _Checker(sizes)
     for key, kind in SCHEMA.items():
         if key in document:
-            _check(document[key], kind, key, sizes)
-    return document
+            checker.check(document[key], kind, key)
+    return document, checker.left_out
 
 
 def check(value: object, schema: Json, place: str) -> None:
     """Refuse a value that is not an object as a schema says; see `SCHEMA`."""
-    _check(value, schema, place, {})
+    _Checker({}).check(value, schema, place)
 
 
 @contextmanager
@@ -273,34 +287,61 @@ def _refuse_constant(name: str) -> None:
     raise DamagedFileError(f"its JSON contains {name}")
 
 
-def _check(value: object, kind: Any, place: str, sizes: dict[str, int]) -> None:
-    if isinstance(kind, dict):
-        _check_object(value, kind, place, sizes)
-    elif isinstance(kind, list):
-        if not isinstance(value, list):
-            raise DamagedFileError(f"{place} is not a list")
-        for number, each in enumerate(value):
-            _check(each, kind[0], f"{place}[{number}]", sizes)
-    elif kind in SCHEMA:
-        count = sizes.get(kind, 0)
-        if type(value) is not int or not 0 <= value < count:
-            raise DamagedFileError(f"{place} is {value!r:.40}, but the file has {count} {kind}")
-    elif not _VALUE_CHECKS[kind](value):
-        raise DamagedFileError(f"{place} is {value!r:.40}, not {kind}")
+@dataclass(frozen=True)
+class _Checker:
+    """Compares a document with a schema."""
 
+    sizes: Mapping[str, int]
+    """Lengths of the document's top-level lists."""
 
-def _check_object(value: object, kind: Json, place: str, sizes: dict[str, int]) -> None:
-    if not isinstance(value, dict):
-        raise DamagedFileError(f"{place} is not an object")
-    for name, inner in kind.items():
-        key = name.rstrip("!")
-        if key == "*":
-            for each in value:
-                _check(value[each], inner, f"{place}.{each}", sizes)
-        elif key in value:
-            _check(value[key], inner, f"{place}.{key}", sizes)
-        elif name != key:
-            raise DamagedFileError(f"{place} lacks {key!r}")
+    left_out: list[str] = field(default_factory=list)
+    """What is wrong with members that were left out."""
+
+    def check(self, value: object, kind: Any, place: str) -> None:
+        """Refuse a value that is not of a kind."""
+        if isinstance(kind, dict):
+            self._check_object(value, kind, place)
+        elif isinstance(kind, list):
+            if not isinstance(value, list):
+                raise DamagedFileError(f"{place} is not a list")
+            for number, each in enumerate(value):
+                self.check(each, kind[0], f"{place}[{number}]")
+        elif kind in SCHEMA:
+            count = self.sizes.get(kind, 0)
+            if type(value) is not int or not 0 <= value < count:
+                raise DamagedFileError(f"{place} is {value!r:.40}, but the file has {count} {kind}")
+        elif not _VALUE_CHECKS[kind](value):
+            raise DamagedFileError(f"{place} is {value!r:.40}, not {kind}")
+
+    def _check_object(self, value: object, kind: Json, place: str) -> None:
+        if not isinstance(value, dict):
+            raise DamagedFileError(f"{place} is not an object")
+        for name, inner in kind.items():
+            key = name.rstrip("!?")
+            members = list(value) if key == "*" else [key] if key in value else []
+            if not members and name.endswith("!"):
+                raise DamagedFileError(f"{place} lacks {key!r}")
+            for member in members:
+                if name.endswith("?"):
+                    self._leave_out_invalid(value, member, inner, f"{place}.{member}")
+                else:
+                    self.check(value[member], inner, f"{place}.{member}")
+
+    def _leave_out_invalid(self, holder: Any, key: str | int, kind: Any, place: str) -> None:
+        """Take out what is invalid of a member: items of a list become None, else all of it."""
+        items = holder[key]
+        if isinstance(kind, list) and isinstance(items, list):
+            for number in range(len(items)):
+                self._leave_out_invalid(items, number, kind[0], f"{place}[{number}]")
+            return
+        try:
+            self.check(holder[key], kind, place)
+        except DamagedFileError as error:
+            if isinstance(key, int):
+                holder[key] = None  # other members count the items
+            else:
+                del holder[key]
+            self.left_out.append(str(error))
 
 
 def _is_real(value: object) -> bool:
@@ -323,3 +364,8 @@ _VALUE_CHECKS: dict[str, Callable[[object], bool]] = {
     _ANY_NUMBER_LIST: _are_reals,
     **{name: partial(_are_reals, count=count) for count, name in _NUMBER_LISTS.items()},
 }
+
+
+def present(holder: Json, key: str) -> list[Any]:
+    """Return the items of a list that were not left out; none of a list that is absent."""
+    return [each for each in holder.get(key, ()) if each is not None]

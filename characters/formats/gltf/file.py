@@ -3,6 +3,7 @@
 import base64
 import json
 import struct
+import warnings
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
@@ -10,7 +11,7 @@ from urllib.parse import unquote, unquote_to_bytes, urlsplit
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.errors import CharacterError
+from cubeling.characters.errors import CharacterError, CharacterWarning
 from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, parse
 from cubeling.characters.skeleton.pose import Array
 from cubeling.files import FileKind
@@ -25,6 +26,7 @@ GLTF_FILE = FileKind(
 """A .glb, .gltf or .vrm file, or a buffer or picture beside it."""
 
 MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
+_MOST_WARNINGS = 4  # of one file about its schema
 _MAX_EMPTY_ROWS = 2_000_000  # of an accessor without data
 
 # Extensions that may be required; others change how the data must be read.
@@ -42,6 +44,10 @@ _SUPPORTED_EXTENSIONS = {
     "VRMC_node_constraint",
     "VRM",
 }
+
+_BASIS = "KHR_texture_basisu"
+_ONLY_LOOKS = ("KHR_materials_", "KHR_lights_", "EXT_texture_", "KHR_texture_", "MSFT_texture_")
+"""How extensions begin without which a character can be drawn, in plainer colours."""
 
 COMPONENT_TYPES: dict[int, type[np.generic]] = {
     5120: np.int8,
@@ -99,6 +105,11 @@ class GltfFile:
     def all(self, kind: str) -> list[Json]:
         """Return the members of a list at the top of the document, such as "nodes"."""
         return list(self.document.get(kind, ()))
+
+    def warn(self, repair: str) -> None:
+        """Warn of what is left out or repaired, in one line whatever names the file has."""
+        line = " ".join(f"{self.path}: {repair}".split())
+        warnings.warn(line, CharacterWarning, stacklevel=2)
 
     def scene_extra(self, name: str) -> object:
         """Return what the first scene with such an extra says, as our own writer states it."""
@@ -218,12 +229,15 @@ def _component(holder: Json) -> "np.dtype[np.generic]":
     return np.dtype(COMPONENT_TYPES[code]).newbyteorder("<")
 
 
-def open_gltf(path: Path) -> GltfFile:
-    """Read a .glb or .gltf file with its buffers; refuse extensions that are not supported."""
-    data = GLTF_FILE.read(path)
+def open_gltf(path: Path, content: bytes | None = None) -> GltfFile:
+    """Read a .glb or .gltf file with its buffers; refuse extensions that are not supported.
+
+    `content` is what a file of another format was converted to.
+    """
+    data = GLTF_FILE.read(path) if content is None else content
     text, blob = _unpack(path, data)
     try:
-        document = parse(text)
+        document, left_out = parse(text)
     except DamagedFileError:
         raise
     except (ValueError, RecursionError):
@@ -231,13 +245,21 @@ def open_gltf(path: Path) -> GltfFile:
     version = str(document["asset"].get("version"))
     if not version.startswith("2"):
         raise CharacterError(f"{path}: glTF {version:.20}; export it as glTF 2.0")
-    unknown = sorted(set(document.get("extensionsRequired", ())) - _SUPPORTED_EXTENSIONS)
+    required = sorted(set(document.get("extensionsRequired", ())) - _SUPPORTED_EXTENSIONS)
+    unknown = [name for name in required if not name.startswith(_ONLY_LOOKS)]
     if unknown:
-        advice = {_advice(extension, path) for extension in unknown}
+        advice = {_advice(extension, path, document) for extension in unknown}
         raise CharacterError(
             f"{path}: requires the extension {', '.join(unknown)}; {'; '.join(sorted(advice))}"
         )
     opened = GltfFile(path, document, (), ReadBudget(60_000_000 + 2 * len(data)))
+    looks = [name for name in required if name.startswith(_ONLY_LOOKS)]
+    if looks:
+        opened.warn(f"it is drawn without {', '.join(looks)}, which it requires")
+    for wrong in left_out[:_MOST_WARNINGS]:
+        opened.warn(f"{wrong}; left it out")
+    if len(left_out) > _MOST_WARNINGS:
+        opened.warn(f"{len(left_out) - _MOST_WARNINGS} more like this were left out")
     buffers: list[bytes] = []
     for number, buffer in enumerate(opened.all("buffers")):
         with error_context(f"buffer {number}"):
@@ -248,13 +270,26 @@ def open_gltf(path: Path) -> GltfFile:
     return replace(opened, buffers=tuple(buffers))
 
 
-def _advice(extension: str, path: Path) -> str:
+def _advice(extension: str, path: Path, document: Json) -> str:
     """Return what makes a file do without an extension."""
-    if extension.endswith("_meshopt_compression"):
-        return f"unpack it: npx @gltf-transform/cli copy {path.name} unpacked.glb"
-    if extension == "KHR_texture_basisu":
-        return "export its textures as PNG, JPEG or WebP"
-    return "export it without"
+    if not extension.endswith("_meshopt_compression"):
+        return "export it without"
+    if _BASIS in document.get("extensionsRequired", ()):
+        return without_ktx(path, document)
+    if _states_vrm(document):
+        return "export it without compression"  # the tool below drops what it does not know
+    return f"unpack it: npx @gltf-transform/cli copy {path.name} unpacked.glb"
+
+
+def without_ktx(path: Path, document: Json) -> str:
+    """Return what gives a file PNG textures instead of KTX2; the command unpacks meshes too."""
+    if _states_vrm(document):
+        return "export it with PNG, JPEG or WebP textures"
+    return f"convert it: npx @gltf-transform/cli ktxdecompress {path.name} unpacked.glb"
+
+
+def _states_vrm(document: Json) -> bool:
+    return any(name.startswith("VRM") for name in document.get("extensions", {}))
 
 
 def has_mesh(path: Path) -> bool:

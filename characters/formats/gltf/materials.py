@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 from cubeling.characters.errors import CharacterWarning
 from cubeling.characters.formats.gltf.buffer import GlbBuilder
 from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
-from cubeling.characters.formats.gltf.file import GltfFile
+from cubeling.characters.formats.gltf.file import GltfFile, without_ktx
 from cubeling.characters.formats.gltf.vrm import mtoon
 from cubeling.characters.model.mesh import Material, ToonShading
 from cubeling.characters.skeleton.pose import Array
 
 Image = NDArray[np.uint8]
 """(height, width, 3 or 4), RGB or RGBA."""
+
+_KTX_MAGIC = b"\xabKTX 20"
 
 MAX_SIDE_PX = 8192  # graphics cards guarantee hardly more
 
@@ -32,12 +34,16 @@ class _ImageDecoder:
     def __init__(self, file: GltfFile) -> None:
         self._file = file
         self._decoded: dict[tuple[int, str], Image] = {}
+        self._has_ktx = False
 
     def texture(self, index: int, mode: Literal["RGB", "RGBA"]) -> Image | None:
-        """Return the image of a texture, or None if it has none."""
+        """Return the image of a texture, or None if it has none that is read."""
         texture = self._file.document["textures"][index]
-        webp = texture.get("extensions", {}).get("EXT_texture_webp", {})
-        source = webp.get("source", texture.get("source"))
+        webp, basis = (
+            texture.get("extensions", {}).get(name, {})
+            for name in ("EXT_texture_webp", "KHR_texture_basisu")
+        )
+        source = webp.get("source", texture.get("source", basis.get("source")))
         if source is None:
             return None
         if (source, mode) not in self._decoded:
@@ -49,8 +55,17 @@ class _ImageDecoder:
                 data = self._file.view(image["bufferView"])
             else:
                 raise DamagedFileError(f"{name} has no data")
+            if data[:7] == _KTX_MAGIC:
+                self._warn_of_ktx()
+                return None
             self._decoded[source, mode] = self._decode(data, name, mode)
         return self._decoded[source, mode]
+
+    def _warn_of_ktx(self) -> None:
+        if not self._has_ktx:
+            self._has_ktx = True
+            advice = without_ktx(self._file.path, self._file.document)
+            self._file.warn(f"its textures are KTX2 and are not drawn; {advice}")
 
     def _decode(self, data: bytes | memoryview, name: str, mode: Literal["RGB", "RGBA"]) -> Image:
         import PIL.Image

@@ -25,12 +25,16 @@ from cubeling.characters.formats.gltf.vrm.springs import read_springs
 from cubeling.characters.formats.loading import MotionOptions, RecordedMotion
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.mesh import Mesh
+from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Array, Skeleton
 
 
-def load_character(path: Path) -> Character:
-    """Read a character: a skinned one, or one of animated rigid parts."""
-    with _open(path) as file:
+def load_character(path: Path, content: bytes | None = None) -> Character:
+    """Read a character: a skinned one, or one of animated rigid parts.
+
+    `content` is what a file of another format was converted to.
+    """
+    with _open(path, content) as file:
         springs, constraints = read_springs(file), read_constraints(file)
         tree, humanoid = _read_joints(file, springs.nodes | constraints.nodes)
         table = read_morph_table(file, tree)
@@ -40,7 +44,7 @@ def load_character(path: Path) -> Character:
                 "its skeleton moves no mesh; export the model with its skin, or use it as a motion"
             )
         names, stated = tree.skeleton.names, file.scene_extra("semantics")
-        semantics = stated.items() if isinstance(stated, dict) else ()
+        semantics = stated.items() if isinstance(stated, dict) else _head_of(file, tree).items()
         character = Character(
             name=file.path.stem,
             skeleton=_with_rest_morphs(tree.skeleton, table.rest),
@@ -49,18 +53,20 @@ def load_character(path: Path) -> Character:
             morphs=table.names,
             semantics={part: joint for part, joint in semantics if joint in ("", *names)},
             springs=springs.bones(tree),
-            constraints=constraints.of_joints(tree),
+            constraints=constraints.of_joints(file, tree),
             look_at=read_look_at(file),
         )
         extra = file.scene_extra(EXTRA)
         if extra is not None:
             character = with_followers(character, extra)
-        return character if humanoid is None else _as_humanoid(character, humanoid, parts, tree)
+        return (
+            character if humanoid is None else _as_humanoid(file, character, humanoid, parts, tree)
+        )
 
 
-def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
+def load_motion(path: Path, options: MotionOptions, content: bytes | None = None) -> RecordedMotion:
     """Read one clip of a file and its skeleton; the file need not have a mesh."""
-    with _open(path) as file:
+    with _open(path, content) as file:
         tree, humanoid = _read_joints(file)
         table = read_morph_table(file, tree)
         skeleton = _with_rest_morphs(tree.skeleton, table.rest)
@@ -77,12 +83,12 @@ def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
 
 
 @contextmanager
-def _open(path: Path) -> Iterator[GltfFile]:
+def _open(path: Path, content: bytes | None) -> Iterator[GltfFile]:
     """Open a file; errors while it is read name it in one line."""
     try:
-        file = with_unpacked_meshes(open_gltf(path))
+        file = with_unpacked_meshes(open_gltf(path, content))
         if path.suffix.lower() == ".vrm" and read_humanoid(file) is None:
-            raise DamagedFileError("contains no VRM; call it .glb if it is glTF")
+            file.warn("contains no VRM; read as plain glTF")
         yield file
     except DamagedFileError as error:
         # Names from the file may contain line breaks; the message is one line.
@@ -104,7 +110,7 @@ def _read_joints(
             for animation in file.all("animations")
             for channel in animation["channels"]
             if "node" in channel["target"]
-        }
+        } | _faces(file)
         if not joints:
             raise DamagedFileError(
                 "has no skin and no animation, so nothing in it can move; "
@@ -113,20 +119,42 @@ def _read_joints(
     return read_node_tree(file, joints), humanoid
 
 
+def _faces(file: GltfFile) -> set[int]:
+    """Return the nodes with meshes of a file whose face moves by morphs, though it has no skin."""
+    meshes = file.all("meshes")
+    has_targets = any(each.get("targets") for mesh in meshes for each in mesh["primitives"])
+    return {n for n, node in enumerate(file.all("nodes")) if has_targets and "mesh" in node}
+
+
+def _head_of(file: GltfFile, tree: NodeTree) -> dict[str, str]:
+    """Return the head of a file that is one: it has a face, no skin, and no joint of that name."""
+    anatomy, skeleton = Anatomy.guess(tree.skeleton), tree.skeleton
+    if file.all("skins") or not _faces(file) or {"head", "hips"} & set(anatomy.joints):
+        return {}
+    # Eyes and teeth may lie beside the face: what carries them all is turned.
+    lines = [set(skeleton.with_ancestors([tree.joint_of_node[n]])) for n in tree.mesh_nodes]
+    shared = set.intersection(*lines)
+    return {"head": skeleton.names[max(shared)]} if shared else {}
+
+
 def _with_rest_morphs(skeleton: Skeleton, morphs: Array | None) -> Skeleton:
     """Return a skeleton with these morph weights in its rest pose."""
     return replace(skeleton, rest=replace(skeleton.rest, morphs=morphs))
 
 
 def _as_humanoid(
-    character: Character, humanoid: VrmHumanoid, parts: list[tuple[int, Mesh]], tree: NodeTree
+    file: GltfFile,
+    character: Character,
+    humanoid: VrmHumanoid,
+    parts: list[tuple[int, Mesh]],
+    tree: NodeTree,
 ) -> Character:
     """Return a character with the body parts and expressions that VRM states."""
     names = character.skeleton.names
     semantics = {bone: names[tree.joint_of_node[node]] for bone, node in humanoid.bones.items()}
     if not humanoid.expressions:
         return replace(character, semantics=semantics)
-    meshes, morphs = mixed_expressions(parts, humanoid)
+    meshes, morphs = mixed_expressions(file, parts, humanoid)
     # Animated weights belong to morph targets, which the expressions replace.
     clips = {
         name: replace(clip, poses=replace(clip.poses, morphs=None))

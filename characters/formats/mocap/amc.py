@@ -20,7 +20,6 @@ BLOCK_CHARACTERS = 1 << 22
 """Length of text that is split into words at once."""
 
 _CMU_RATE_HZ = 120.0  # where files state none
-_MAX_RATE_HZ = 1e5
 _FRAME_NUMBER = re.compile(r"\n[ \t]*\d{1,11}[ \t]*\n")
 
 
@@ -38,9 +37,7 @@ def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     file = TextFile.read(path)
     body = load_skeleton(options.skeleton or _find_skeleton(path))
     angle_unit, rate, start = _header(file, body.angle_unit)
-    rate = options.rate if options.rate is not None else rate
-    if not 0 < rate < _MAX_RATE_HZ:
-        raise CharacterError(f"{path}: invalid rate of {rate:g} frames a second; give rate= in Hz")
+    rate = file.checked_rate(rate if options.rate is None else options.rate)
     values, notes = _values(file, start, body)
     file.check_size(len(body.skeleton), len(values))
     clip = Clip(path.stem, rate, body.channels(angle_unit).poses(values), loop=False)

@@ -20,7 +20,9 @@ from cubeling.characters.motion.clip import Clip
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
-_FRAME_TIME_RANGE_S = (1e-5, 100.0)
+_FRAME_TIME_RANGE_S = (1e-5, 1.0)
+_STATED_RATES_HZ = (5.0, 1000.0)
+"""Numbers that some exporters write as the frame time although they mean frames a second."""
 
 
 def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
@@ -31,7 +33,7 @@ def load_motion(path: Path, options: MotionOptions) -> RecordedMotion:
     """
     file = TextFile.read(path)
     tree, end = _read_hierarchy(file)
-    rate, values, notes = _motion(file, end, tree.channel_count)
+    rate, values, notes = _motion(file, end, tree.channel_count, options.rate)
     file.check_size(len(tree.names), len(values))
     clip = Clip(path.stem, rate, tree.channels().poses(values), loop=False)
     return metric_motion(path, clip, tree.skeleton(), options, tree.notes() + notes)
@@ -92,6 +94,7 @@ class _Words:
 
     def __init__(self, file: TextFile) -> None:
         self.file, self.line = file, 1
+        self._warned: set[str] = set()
         self._words = (
             (number, word)
             for number, text in enumerate(file.text.split("\n"), start=1)
@@ -101,6 +104,12 @@ class _Words:
     def error(self, problem: str, advice: str) -> CharacterError:
         """Return the error for the current line."""
         return self.file.error(self.line, problem, advice)
+
+    def warn_once(self, repair: str) -> None:
+        """Warn of a repair the first time that it is made."""
+        if repair not in self._warned:
+            self._warned.add(repair)
+            self.file.warn(repair)
 
     def next(self, expected: str) -> str:
         """Return the next word; `expected` describes it in the message if there is none."""
@@ -124,10 +133,15 @@ def _read_hierarchy(file: TextFile) -> tuple[_Tree, int]:
     words, tree = _Words(file), _Tree()
     words.expect("HIERARCHY")
     words.expect("ROOT")
+    roots: list[int] = []
     while True:
+        roots.append(len(tree.names))
         _read_joint(words, tree, "ROOT")
         if words.expect("ROOT", "MOTION") == "MOTION":
             break
+    if len(roots) > 1:
+        names = ", ".join(quote(tree.names[root]) for root in roots[:4])
+        file.warn(f"{len(roots)} roots ({names}); the performer is the first")
     if not tree.channel_count:
         raise words.error("no joint has channels", "export the joints with their channels")
     return tree, words.line
@@ -146,10 +160,21 @@ def _read_joint(words: _Words, tree: _Tree, kind: str) -> None:
         elif word == "JOINT":
             open_joints.append(_open_joint(words, tree, joint, word))
         else:
-            words.expect("SITE")
-            words.expect("{")
+            _skip_site_name(words)
             tree.add(tree.names[joint] + "_end", joint, _offset(words))
             words.expect("}")
+
+
+def _skip_site_name(words: _Words) -> None:
+    """Read `Site {`; some exporters give the site a name, as in `Site_Head {`."""
+    name = []
+    while (word := words.next("Site and {")) != "{":
+        name.append(word)
+    stated = " ".join(name)
+    if not stated.upper().startswith("SITE") or len(name) > 4:
+        raise words.error(f"expected SITE, found {quote(stated or '{')}", "export again")
+    if stated.upper() != "SITE":
+        words.warn_once("end sites have names; they are called as the joint that they end")
 
 
 def _open_joint(words: _Words, tree: _Tree, parent: int, kind: str) -> int:
@@ -186,20 +211,19 @@ def _read_channels(words: _Words, tree: _Tree, joint: int) -> None:
         (tree.rotations if kind == "rotation" else tree.translations).append(moves)
 
 
-def _motion(file: TextFile, start: int, width: int) -> tuple[float, Array, tuple[str, ...]]:
+def _motion(
+    file: TextFile, start: int, width: int, stated_rate: float | None
+) -> tuple[float, Array, tuple[str, ...]]:
     """Return rate [Hz], values (frames, width) and notes of the MOTION that follows a line."""
     lines = file.text.split("\n")
     at, stated = _setting(file, lines, start, "frames")
     at, frame_time = _setting(file, lines, at, "frame time")
-    shortest, longest = _FRAME_TIME_RANGE_S
-    if not shortest <= frame_time <= longest:
-        raise file.error(at, f"an invalid frame time of {frame_time:g} s", "state seconds a frame")
+    rate = _rate(file, at, frame_time) if stated_rate is None else file.checked_rate(stated_rate)
     rows, row_lines = _rows(file, lines, at, width)
     if not rows:
         raise file.error(at, "no frames follow", "export the motion, not the skeleton alone")
     if len(rows) < stated:
-        problem = f"ends after {len(rows)} of {stated:.0f} frames"
-        raise file.error(row_lines[-1], problem, CUT_OFF)
+        file.warn(f"it has {len(rows)} of the {stated:.0f} frames that it states; they are read")
     values = parse_numbers(chain.from_iterable(rows))
     if values is None:  # the first invalid number raises
         read = zip(row_lines, rows, strict=True)
@@ -207,7 +231,23 @@ def _motion(file: TextFile, start: int, width: int) -> tuple[float, Array, tuple
     notes: tuple[str, ...] = ()
     if len(rows) > stated:
         notes = (f"{len(rows)} frames found, {stated:.0f} stated: all are read",)
-    return _nominal_rate(1.0 / frame_time), values.reshape(-1, width), notes
+    return rate, values.reshape(-1, width), notes
+
+
+def _rate(file: TextFile, line: int, frame_time: float) -> float:
+    """Return the frames a second that a frame time [s] stands for."""
+    shortest, longest = _FRAME_TIME_RANGE_S
+    slowest, fastest = _STATED_RATES_HZ
+    if shortest <= frame_time <= longest:
+        return _nominal_rate(1.0 / frame_time)
+    if slowest <= frame_time <= fastest:
+        file.warn(
+            f"a frame time of {frame_time:g} s; taken as {frame_time:g} frames a second, "
+            "--fps states another rate"
+        )
+        return frame_time
+    problem = f"an invalid frame time of {frame_time:g} s"
+    raise file.error(line, problem, "write seconds a frame, or state the rate with --fps")
 
 
 def _rows(

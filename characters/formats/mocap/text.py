@@ -1,12 +1,13 @@
 """Text files of motion capture; errors name the file and the line."""
 
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from cubeling.characters.errors import CharacterError
+from cubeling.characters.errors import CharacterError, CharacterWarning
 from cubeling.characters.skeleton.pose import Array
 from cubeling.files import FileKind
 
@@ -20,6 +21,7 @@ MOTION_CAPTURE_FILE = FileKind(
 """A text file of motion capture: two hours at 120 Hz take 0.6 GB."""
 
 MAX_ABS_NUMBER = 1e9  # beyond any recording in any unit, and sums of such numbers stay finite
+MAX_RATE_HZ = 1e5
 MAX_POSED_JOINTS = 30_000_000  # joints × frames; two hours at 120 Hz with 35 joints
 EXPORT_AGAIN = "export the file again"
 CUT_OFF = "the file is cut off: export it again"
@@ -46,6 +48,10 @@ class TextFile:
             problem = f"byte 0x{data[error.start]:02x} is not UTF-8 text"
             raise cls(path, "").error(line, problem, "save it as UTF-8, or export again") from None
         file = cls(path, text.replace("\r\n", "\n").replace("\r", "\n"))
+        if text.endswith("\0"):
+            text = text.rstrip("\0")
+            file = cls(path, file.text.rstrip("\0"))
+            file.warn("zero bytes follow the text; they are left out")
         if "\0" in text:
             line = text.count("\n", 0, text.index("\0")) + 1
             raise file.error(line, "holds binary data, not text", "give the exported text file")
@@ -54,6 +60,18 @@ class TextFile:
     def error(self, line: int, problem: str, advice: str) -> CharacterError:
         """Return the error for a line, counted from 1."""
         return CharacterError(f"{self.path}, line {line}: {problem}; {advice}")
+
+    def warn(self, repair: str) -> None:
+        """Warn of what had to be repaired, or was not as it should be."""
+        warnings.warn(f"{self.path}: {repair}", CharacterWarning, stacklevel=2)
+
+    def checked_rate(self, rate: float) -> float:
+        """Return a rate [Hz] that is one, or refuse it."""
+        if not 0.0 < rate < MAX_RATE_HZ:
+            raise CharacterError(
+                f"{self.path}: invalid rate of {rate:g} frames a second; state it in Hz"
+            )
+        return rate
 
     def number(self, line: int, word: str) -> float:
         """Return one finite number, or refuse the line."""

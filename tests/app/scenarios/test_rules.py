@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import check_actions
 from cubeling.app.scenarios import Inputs, Situation, make_scenario
 from cubeling.app.scenarios.rules.file import read_rules
 from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, Term
 from cubeling.app.speaking.lines import bundled_languages, bundled_lines
-from cubeling.tracking import CubeModel
+from cubeling.tracking import CubeModel, Intrinsics
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs/rules.md").read_text("utf-8")
@@ -97,12 +99,18 @@ def test_the_key_c_begins_again(play, hand):
     assert play(hand.frame(resting=True, lifted=False)).command.activity == "wave"
 
 
-def test_an_action_that_the_character_lacks_is_named(rules, hand):
+def test_an_action_that_the_character_lacks_is_named_before_play(rules):
     scenario = make_scenario(rules)
-    known = Situation(actions=("nod", "cheer"))
-    scenario.update(hand.frame(), known, Inputs())
-    with pytest.raises(AppError, match=r"cannot 'wave'; it knows nod, cheer"):
-        scenario.update(hand.frame(resting=False, lifted=True), known, Inputs())
+    check_actions(scenario, "me", ("wave", "nod", "cheer", "kiss"))
+    with pytest.raises(AppError, match=r"rule\[1\].do: me cannot 'wave'; its actions: nod, cheer"):
+        check_actions(scenario, "me", ("nod", "cheer"))
+
+
+def test_a_character_that_lacks_an_action_is_not_let_in(tmp_path):
+    path = tmp_path / "bark.toml"
+    path.write_text("[[rule]]\nwhen = 'lifted'\ndo = 'bark'\n")
+    with pytest.raises(AppError, match=r"bark\.toml: rule\[0\]\.do: human cannot 'bark'"):
+        Playground(str(path), Intrinsics.guess((640, 480)))
 
 
 def test_what_rules_say_are_the_lines_of_the_scenario(rules):

@@ -26,6 +26,7 @@ from cubeling.files import FileKind
 from cubeling.tracking import Intrinsics
 from tests.characters.formats.built_gltf import build_arm
 from tests.characters.formats.hopper import hopper
+from tests.characters.formats.written_fbx import arm
 
 TREE = Path(__file__).parents[3]
 SHARED = TREE.parent / "shared" / "data"
@@ -90,6 +91,7 @@ def _writers() -> Iterator[tuple[str, Callable[[Path], object]]]:
     yield "a.bml", lambda path: path.write_text(BLOCK, "utf-8")
     yield "rules.toml", lambda path: path.write_text(RULES, "utf-8")
     yield "a.glb", lambda path: path.write_bytes(build_arm().bytes())
+    yield "a.fbx", lambda path: path.write_text(arm(), "utf-8")
     yield "profile.toml", SpeechProfile().save
     yield "preferences.toml", _keep_preferences
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from cubeling.characters import CharacterError
+from cubeling.characters import CharacterError, CharacterWarning
 from cubeling.characters.formats import RecordedMotion, load_motion
 from cubeling.characters.formats.mocap.axes_and_units import CMU_UNIT_M
 from cubeling.characters.skeleton import rotations
@@ -142,7 +142,8 @@ def test_several_roots_spaces_in_names_and_names_used_twice(tmp_path: Path) -> N
     prop = "ROOT hips { OFFSET 0 0 30 CHANNELS 3 Xposition Yposition Zposition }"
     text = LEG.replace("MOTION", prop + "\nMOTION").replace("JOINT foot", "JOINT left foot")
     text = text.replace(" 0 0 0 0\n", " 0 0 0 0 1 2 3\n").replace("45 0\n", "45 0 1 2 3\n")
-    performance = load_motion(written(tmp_path, text))
+    with pytest.warns(CharacterWarning, match=r"2 roots \('hips', 'hips_2'\)"):
+        performance = load_motion(written(tmp_path, text))
     assert performance.skeleton.names == ("hips", "left foot", "left foot_end", "head", "hips_2")
     assert performance.skeleton.parents[-1] == -1
     assert any("as hips, repeat" in note for note in performance.notes)
@@ -152,6 +153,35 @@ def test_all_frames_are_read_where_there_are_more_than_stated(tmp_path: Path) ->
     performance = load_motion(written(tmp_path, LEG.replace("Frames: 2", "Frames: 1")))
     assert len(performance.clip) == 2
     assert any("all are read" in note for note in performance.notes)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "warning"),
+    [
+        ("Frames: 2", "Frames: 900000000", "it has 2 of the 900000000 frames"),
+        ("End Site", "End Site_Foot", "end sites have names"),
+        ("End Site", "End Site of the foot", "end sites have names"),
+        ("45 0\n", "45 0\n\0\0\0", "zero bytes follow the text"),
+        ("0.0333333", "30", "taken as 30 frames a second, --fps"),
+    ],
+)
+def test_what_other_exporters_write_is_read_with_a_warning(
+    old: str, new: str, warning: str, tmp_path: Path
+) -> None:
+    plain = load_motion(written(tmp_path, LEG))
+    path = written(tmp_path, LEG.replace(old, new, 1))
+    with pytest.warns(CharacterWarning, match=rf"leg\.bvh: .*{warning}"):
+        performance = load_motion(path)
+    assert performance.skeleton.names == plain.skeleton.names
+    assert performance.clip.rate == plain.clip.rate
+    np.testing.assert_array_equal(places(performance), places(plain))
+
+
+def test_the_rate_can_be_stated(tmp_path: Path) -> None:
+    path = written(tmp_path, LEG.replace("0.0333333", "0"))
+    assert load_motion(path, rate=25.0).clip.rate == 25.0
+    with pytest.raises(CharacterError, match="invalid rate of 0 frames"):
+        load_motion(path, rate=0.0)
 
 
 @given(
@@ -247,8 +277,6 @@ def test_scale_and_up_can_be_stated(tmp_path: Path) -> None:
             "10 95 20 0 0 90 0 45 0 7",
             "line 25: frame 2 has 10 numbers, not 9",
         ),
-        ("10 95 20 0 0 90 0 45 0\n", "", "line 24: ends after 1 of 2 frames"),
-        ("Frames: 2", "Frames: 900000000", "line 25: ends after 2 of 900000000 frames"),
         ("Frames: 2", "Frames: -3x", "line 22: expected a number, found '-3x'"),
         ("20 0 0 90", "20 nan 0 90", "line 25: 'nan' is out of range"),
         ("20 0 0 90", "20 0 1e999 90", "line 25: '1e999' is out of range"),
@@ -260,6 +288,10 @@ def test_scale_and_up_can_be_stated(tmp_path: Path) -> None:
         ("MOTION", "}", "line 21: expected ROOT or MOTION, found '}'"),
         ("\n}\nMOTION", "\nMOTION", "line 20: expected JOINT"),
         ("0.0333333", "0", "line 23: an invalid frame time of 0 s"),
+        ("0.0333333", "2", "line 23: an invalid frame time of 2 s; .* --fps"),
+        ("0.0333333", "5000", "line 23: an invalid frame time of 5000 s"),
+        ("End Site", "End Effector", "line 11: expected SITE, found 'Effector'"),
+        ("End Site", "End", "line 11: expected SITE, found '{'"),
         ("Frame Time", "Time", "line 23: expected 'frame time', found"),
         ("ROOT hips", "ROOT", "line 3: this ROOT has no name"),
         ("HIERARCHY", "GIF89a", "line 1: expected HIERARCHY, found 'GIF89a'"),
@@ -311,6 +343,7 @@ def test_a_motion_too_large_for_memory_is_refused(tmp_path: Path) -> None:
         load_motion(written(tmp_path, text))
 
 
+@pytest.mark.filterwarnings("ignore::cubeling.characters.CharacterWarning")
 @given(data=st.data())
 @settings(max_examples=examples(60))
 def test_a_mutated_file_loads_or_is_refused_in_one_line(

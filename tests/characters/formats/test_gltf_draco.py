@@ -112,11 +112,17 @@ def test_a_damaged_compressed_mesh_is_refused_in_one_line(tmp_path, change, told
     ("extension", "advice"),
     [
         ("EXT_meshopt_compression", "npx @gltf-transform/cli copy arm.glb unpacked.glb"),
-        ("KHR_texture_basisu", "export its textures as PNG, JPEG or WebP"),
         ("XYZ_new", "export it without"),
     ],
 )
 def test_other_compressions_name_what_unpacks_them(tmp_path, extension, advice):
     required = glb({"asset": {"version": "2.0"}, "extensionsRequired": [extension]})
     with pytest.raises(CharacterError, match=f"requires the extension {extension}; .*{advice}"):
+        load(tmp_path, required)
+
+
+def test_a_file_with_meshopt_and_ktx2_names_the_command_that_undoes_both(tmp_path):
+    both = ["EXT_meshopt_compression", "KHR_texture_basisu"]
+    required = glb({"asset": {"version": "2.0"}, "extensionsRequired": both})
+    with pytest.raises(CharacterError, match=r"meshopt.*cli ktxdecompress arm\.glb"):
         load(tmp_path, required)

@@ -102,6 +102,38 @@ def test_webp_textures_are_read_in_place_of_their_fallback(tmp_path):
         assert np.array_equal(texture, color[::-1])
 
 
+KTX2 = b"\xabKTX 20\xbb\r\n\x1a\n" + bytes(60)
+
+
+@pytest.mark.parametrize("required", [False, True])
+def test_a_character_is_drawn_without_its_ktx2_textures_with_a_warning(tmp_path, required):
+    build = build_arm()
+    build.document["images"] = [{"bufferView": build.view(KTX2), "mimeType": "image/ktx2"}]
+    basis = {"extensions": {"KHR_texture_basisu": {"source": 0}}}
+    build.document["textures"] = [basis, basis]
+    build.document["materials"] = [
+        {"pbrMetallicRoughness": {"baseColorTexture": {"index": n}}} for n in (0, 1)
+    ]
+    build.document["meshes"][0]["primitives"][0]["material"] = 0
+    if required:
+        build.document["extensionsRequired"] = ["KHR_texture_basisu"]
+    (tmp_path / "arm.glb").write_bytes(build.bytes())
+    with pytest.warns(CharacterWarning) as caught:
+        character = Character.load(tmp_path / "arm.glb")
+    assert character.meshes[0].material.base_color_texture is None
+    lines = [str(each.message) for each in caught]
+    assert len(lines) == 1 + required
+    assert "cli ktxdecompress arm.glb unpacked.glb" in lines[-1]
+
+
+def test_a_ktx2_texture_beside_a_png_is_not_missed(tmp_path):
+    color = {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}
+    build = dressed(color, encoded(pixels(4)))
+    build.document["images"].append({"bufferView": build.view(KTX2)})
+    build.document["textures"][0]["extensions"] = {"KHR_texture_basisu": {"source": 1}}
+    assert load(tmp_path, build).material.base_color_texture is not None
+
+
 def test_coordinates_are_moved_turned_and_scaled_with_their_texture(tmp_path):
     place = {"offset": [0.5, 0.25], "rotation": np.pi / 2, "scale": [2, 3]}
     texture = {"index": 0, "extensions": {"KHR_texture_transform": place}}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cubeling.characters import Character, CharacterError
+from cubeling.characters import Character, CharacterWarning
 from cubeling.characters.model.mesh import ToonShading
 from tests.characters.formats.built_gltf import build_arm
 
@@ -119,6 +119,7 @@ def test_a_shade_texture_that_lies_otherwise_is_left_out(load):
     assert surface(load({"VRMC_materials_mtoon": stated})).toon.texture is None
 
 
-def test_an_invalid_shade_is_refused(load):
-    with pytest.raises(CharacterError, match=r"shadeColorFactor is .* not 3 numbers"):
-        load({"VRMC_materials_mtoon": {"shadeColorFactor": [1]}})
+def test_an_invalid_shade_is_left_out_with_a_warning(load):
+    with pytest.warns(CharacterWarning, match=r"shadeColorFactor is .* not 3 numbers"):
+        character = load({"VRMC_materials_mtoon": {"shadeColorFactor": [1]}})
+    assert surface(character).toon is None

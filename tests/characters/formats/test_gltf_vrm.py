@@ -4,7 +4,14 @@ import struct
 import numpy as np
 import pytest
 
-from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
+from cubeling.characters import (
+    Animator,
+    Character,
+    CharacterCommand,
+    CharacterError,
+    CharacterWarning,
+    RootDelta,
+)
 from cubeling.characters.control.layers.gaze import GazeLayer
 from cubeling.characters.model.character import skin
 from tests.characters.formats.built_gltf import build_arm, glb
@@ -145,6 +152,18 @@ def test_bones_that_move_no_vertex_are_joints_too(tmp_path):
     ("extension", "reason"),
     [
         ({"specVersion": "2.0"}, r"VRMC_vrm: is version '2\.0'; export it as VRM 1\.0"),
+    ],
+)
+def test_a_vrm_of_another_version_is_refused(tmp_path, extension, reason):
+    build = build_arm()
+    build.document["extensions"] = {"VRMC_vrm": extension}
+    with pytest.raises(CharacterError, match=reason):
+        load(tmp_path, build.bytes())
+
+
+@pytest.mark.parametrize(
+    ("extension", "reason"),
+    [
         (
             {"specVersion": "1.0", "humanoid": {"humanBones": {"hips": {"node": 9}}}},
             r"humanBones\.hips\.node is 9, but the file has 4 nodes",
@@ -158,18 +177,43 @@ def test_bones_that_move_no_vertex_are_joints_too(tmp_path):
             },
             "expression 'aa' binds morph target 5 of node 3, which has 0",
         ),
+        (
+            {"specVersion": "1.0", "expressions": {"preset": {"aa": 3}}},
+            "aa is not an object; left it out",
+        ),
+        ({"specVersion": "1.0", "lookAt": {"type": 1}}, "lookAt.type is 1, not text"),
     ],
 )
-def test_an_invalid_vrm_is_refused(tmp_path, extension, reason):
+def test_an_invalid_part_of_a_vrm_is_left_out_with_a_warning(tmp_path, extension, reason):
     build = build_arm()
     build.document["extensions"] = {"VRMC_vrm": extension}
-    with pytest.raises(CharacterError, match=reason):
-        load(tmp_path, build.bytes())
+    with pytest.warns(CharacterWarning, match=reason):
+        character = load(tmp_path, build.bytes())
+    assert character.morphs == ()
+    assert character.look_at is None
 
 
-def test_a_vrm_without_its_extension_is_refused(tmp_path):
-    with pytest.raises(CharacterError, match=r"contains no VRM; call it \.glb"):
-        load(tmp_path, build_arm().bytes())
+def test_one_bad_expression_costs_that_one_alone(tmp_path, human):
+    def damaged(nodes, carrier, mesh, targets):
+        name, content = vrm_1(nodes, carrier, mesh, targets)
+        content["expressions"]["preset"]["happy"]["morphTargetBinds"][0]["index"] = 999
+        content["expressions"]["custom"]["odd"] = {"morphTargetBinds": [{"node": 9999}]}
+        return name, content
+
+    with pytest.warns(CharacterWarning) as caught:
+        character = load(tmp_path, vrm(human, damaged))
+    assert {"999" in str(each.message) for each in caught} == {True}
+    assert character.morphs == ("blink", "gasp")
+
+
+@pytest.mark.parametrize("name", ["person.glb", "person.txt", "person.VRM", "person.vrm.bin"])
+def test_a_vrm_is_known_by_its_content(tmp_path, human, name):
+    assert dict(load(tmp_path, vrm(human, vrm_1), name).semantics) == BONES
+
+
+def test_a_plain_gltf_that_is_called_vrm_loads_with_a_warning(tmp_path):
+    with pytest.warns(CharacterWarning, match="contains no VRM"):
+        assert load(tmp_path, build_arm().bytes()).name == "person"
 
 
 @pytest.mark.parametrize("version", [1, 0])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cubeling.characters import Animator, Character, CharacterCommand, CharacterError, RootDelta
+from cubeling.characters import Animator, Character, CharacterCommand, CharacterWarning, RootDelta
 from cubeling.characters.control.layers.springs import SpringLayer
 from cubeling.characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm
@@ -134,9 +134,31 @@ def test_a_file_without_a_vrm_has_no_spring_bones(load):
         (springs_1(colliders=[{"node": 1}]), "lacks 'shape'"),
     ],
 )
-def test_invalid_spring_bones_are_refused(load, springs, reason):
-    with pytest.raises(CharacterError, match=reason):
+def test_invalid_spring_bones_are_left_out_with_a_warning(load, springs, reason):
+    with pytest.warns(CharacterWarning, match=reason):
         load(VRMC_springBone=springs)
+
+
+def test_one_bad_collider_or_spring_costs_that_part_alone(load):
+    springs = springs_1()
+    ball = springs["colliders"][0]
+    springs["colliders"].insert(0, {"node": 1, "shape": {"sphere": {"radius": "wide"}}})
+    springs["colliderGroups"] = [{"colliders": [0, 1]}]
+    springs["springs"].insert(0, {"joints": [{"node": 99}, {"node": 5}]})
+    springs["springs"][1]["colliderGroups"] = [0]
+    with pytest.warns(CharacterWarning) as caught:
+        (bone,) = load(VRMC_springBone=springs).springs
+    assert len(caught) == 2
+    assert bone.joint == "lock1"
+    assert [each.radius for each in bone.colliders] == [ball["shape"]["sphere"]["radius"]]
+    balls = [{"radius": "x"}, {"radius": 0.1}]
+    groups = {
+        "colliderGroups": [{"node": 1, "colliders": balls}],
+        "boneGroups": [7, {"bones": [4], "colliderGroups": [0]}],
+    }
+    with pytest.warns(CharacterWarning, match="left it out"):
+        first = load(VRM={"secondaryAnimation": groups}).springs[0]
+    assert (first.joint, [each.radius for each in first.colliders]) == ("lock1", [0.1])
 
 
 def test_a_file_may_require_what_is_read_of_vrm(tmp_path):

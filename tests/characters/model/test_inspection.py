@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cubeling.characters import Character, Clip, Skeleton
+from cubeling.characters import Animator, Character, CharacterCommand, Clip, Skeleton
 from cubeling.characters.model.inspection import inspect
+from tests.characters.formats.built_gltf import Builder
 
 
 @pytest.fixture(scope="module")
@@ -102,6 +103,29 @@ def test_inspection_reports_unrecognised_joints(sound):
     assert "not recognised" in found
     assert "No feet were found" in found
     assert "no clips" in found
+
+
+def test_a_head_without_a_skin_is_a_head(tmp_path):
+    build = Builder()
+    triangle = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.2, 0.1]])
+    shape = {"POSITION": build.floats(triangle, "VEC3")}
+    opened = [{"POSITION": build.floats(0.1 * triangle, "VEC3")}]
+    face = {"primitives": [{"attributes": shape, "targets": opened}]}
+    build.document["meshes"] = [face, {"primitives": [{"attributes": shape}]}]
+    build.document["nodes"] = [
+        {"name": "group", "children": [1, 2]},
+        {"name": "skull_mesh", "mesh": 0},
+        {"name": "eye_L", "mesh": 1, "translation": [0.03, 0.1, 0.1]},
+    ]
+    (tmp_path / "someone.glb").write_bytes(build.bytes())
+    character = Character.load(tmp_path / "someone.glb")
+    head = character.anatomy.joint("head")
+    assert head is not None
+    assert character.skeleton.names[head] == "group"
+    assert [mesh.name for mesh in character.meshes] == ["skull_mesh", "eye_L"]
+    (problem,) = inspect(character).problems
+    assert problem.startswith("It is a head")
+    Animator(character).update(CharacterCommand(0.0))
 
 
 def test_inspection_reports_a_gait_that_does_not_loop(sound):

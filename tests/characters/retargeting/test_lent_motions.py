@@ -17,6 +17,10 @@ from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Skeleton
 from tests.characters.commands import command
+from tests.characters.formats.built_gltf import SAMPLES
+
+GIANTS = [path for path in SAMPLES if path.stem == "dino_t-rex"]
+"""A creature of others whose feet are a third of its height."""
 
 
 @pytest.fixture(scope="module")
@@ -52,6 +56,14 @@ def test_a_person_without_clips_stands_with_hanging_arms_from_the_first_frame_an
         posed = animator.update(command(frame / 30, "move", 2.0, there))
     assert posed.state in ("walk", "run")
     assert posed.table_from_character[2, 3] > 0.05
+
+
+@pytest.mark.skipif(not GIANTS, reason="the creatures of others are not here")
+def test_the_feet_of_a_curve_end_as_they_begin_also_with_large_feet():
+    giant = with_lent_motions(replace(Character.load(GIANTS[0]), clips={}))
+    ends = giant.clips["WalkRightShort"].in_place[np.array([0, -1])].globals(giant.skeleton)
+    feet = list(giant.anatomy.feet)
+    np.testing.assert_allclose(ends[0, feet], ends[1, feet], atol=1e-6)
 
 
 def test_clips_are_retargeted_when_they_are_asked_for_and_once(human):

@@ -35,7 +35,7 @@ def inspect_command(
     character: Annotated[
         str,
         typer.Argument(
-            help="A bundled character, a .glb, .gltf or .vrm file, or a motion: .bvh or .amc."
+            help="A bundled character, a .glb, .gltf, .vrm or .fbx file, or a motion: .bvh or .amc."
         ),
     ],
     output: Annotated[
@@ -48,6 +48,10 @@ def inspect_command(
     ] = None,
     scale: Annotated[
         float | None, typer.Option(help="Unit of a motion in metres, if it is recognised wrongly.")
+    ] = None,
+    fps: Annotated[
+        float | None,
+        typer.Option(help="Frames a second of a .bvh or .amc file, if it states them wrongly."),
     ] = None,
     up: Annotated[
         str | None,
@@ -67,7 +71,7 @@ def inspect_command(
         raise AppError(f"{folder} is a file: choose another folder with --output")
     from cubeling.characters import load_motion
 
-    read_motion = partial(load_motion, skeleton=skeleton, scale=scale, up=up)
+    read_motion = partial(load_motion, skeleton=skeleton, rate=fps, scale=scale, up=up)
     with _progress(f"Reading {Path(character).name}"):
         inspection, has_body = _load(character, read_motion)
     _print(console, inspection)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Files = Annotated[
     list[str] | None,
-    typer.Option(help="A motion: .bvh, .amc, .vrma, or FILE.glb#CLIP; straight or curved."),
+    typer.Option(help="A motion: .bvh, .amc, .vrma, .fbx, or FILE.glb#CLIP; straight or curved."),
 ]
 
 
@@ -44,6 +44,10 @@ def locomotion(
     up: Annotated[
         str | None,
         typer.Option(help="Vertical axis of .bvh and .amc files: x, y, z, -x, -y or -z."),
+    ] = None,
+    fps: Annotated[
+        float | None,
+        typer.Option(help="Frames a second of a .bvh or .amc file, if it states them wrongly."),
     ] = None,
     rest: Annotated[
         str | None,
@@ -72,7 +76,7 @@ def locomotion(
     from cubeling.characters.model import load_recording, make_locomotion
 
     original = Character.load(character)
-    read = partial(load_recording, skeleton=skeleton, up=up, rest=rest)
+    read = partial(load_recording, skeleton=skeleton, up=up, rest=rest, rate=fps)
     walks, runs = ([read(name) for name in names or ()] for names in (walk, run))
     standing = read(idle) if idle else None
     result = make_locomotion(original, walks, runs, standing)

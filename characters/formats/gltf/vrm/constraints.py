@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.errors import CharacterError
+from cubeling.characters.formats.gltf.document import DamagedFileError, Json, label
 from cubeling.characters.formats.gltf.file import GltfFile
 from cubeling.characters.formats.gltf.nodes import NodeTree
 from cubeling.characters.model.constraints import ConstraintKind, JointConstraint, constraint_levels
@@ -48,15 +49,18 @@ class VrmConstraints:
         """All nodes that they name; they must be joints."""
         return set(self.constraints) | {each.source for each in self.constraints.values()}
 
-    def of_joints(self, tree: NodeTree) -> tuple[JointConstraint, ...]:
-        """Return them for the joints of a skeleton; refuse circles."""
+    def of_joints(self, file: GltfFile, tree: NodeTree) -> tuple[JointConstraint, ...]:
+        """Return them for the joints of a skeleton; none, with a warning, if they go in circles."""
         name_of = {node: tree.skeleton.names[joint] for node, joint in tree.joint_of_node.items()}
         found = tuple(
             JointConstraint(each.kind, name_of[node], name_of[each.source], each.axis, each.weight)
             for node, each in self.constraints.items()
         )
-        with error_context("VRMC_node_constraint"):
+        try:
             constraint_levels(tree.skeleton, found)
+        except CharacterError as error:
+            file.warn(f"constraints of nodes: {error}; left them out")
+            return ()
         return found
 
 
@@ -66,8 +70,11 @@ def read_constraints(file: GltfFile) -> VrmConstraints:
     for number, node in enumerate(file.all("nodes")):
         extension = node.get("extensions", {}).get("VRMC_node_constraint")
         if extension is not None:
-            with error_context(f"constraint of {label('node', number, node)}"):
+            try:
                 found[number] = _constraint(extension["constraint"])
+            except (DamagedFileError, KeyError) as error:
+                where = f"the constraint of {label('node', number, node)}"
+                file.warn(f"{where} is not as in the standard ({error}); left it out")
     return VrmConstraints(found)
 
 

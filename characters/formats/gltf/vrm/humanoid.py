@@ -10,7 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.formats.gltf.document import DamagedFileError, Json, error_context, label
+from cubeling.characters.formats.gltf.document import (
+    DamagedFileError,
+    Json,
+    error_context,
+    label,
+    present,
+)
 from cubeling.characters.formats.gltf.file import GltfFile
 from cubeling.characters.model.mesh import Mesh, Morph
 
@@ -61,11 +67,11 @@ def read_humanoid(file: GltfFile) -> VrmHumanoid | None:
 
 
 def mixed_expressions(
-    parts: Iterable[tuple[int, Mesh]], humanoid: VrmHumanoid
+    file: GltfFile, parts: Iterable[tuple[int, Mesh]], humanoid: VrmHumanoid
 ) -> tuple[tuple[Mesh, ...], tuple[str, ...]]:
     """Return meshes, given with their nodes, with expressions as morphs, and names of these."""
     meshes = tuple(
-        replace(mesh, morphs=tuple(_expression_morphs(mesh.morphs, node, humanoid.expressions)))
+        replace(mesh, morphs=tuple(_expression_morphs(file, mesh.morphs, node, humanoid)))
         for node, mesh in parts
     )
     used = {morph.name for mesh in meshes for morph in mesh.morphs}
@@ -73,18 +79,19 @@ def mixed_expressions(
 
 
 def _expression_morphs(
-    targets: Sequence[Morph], node: int, expressions: Mapping[str, tuple[Bind, ...]]
+    file: GltfFile, targets: Sequence[Morph], node: int, humanoid: VrmHumanoid
 ) -> Iterable[Morph]:
-    for name, binds in expressions.items():
+    for name, binds in humanoid.expressions.items():
         own = [(index, weight) for bound, index, weight in binds if bound == node and weight]
-        beyond = [index for index, _ in own if index >= len(targets)]
-        if beyond:
-            raise DamagedFileError(
-                f"expression {name!r} binds morph target {beyond[0]} of node {node}, "
-                f"which has {len(targets)}"
+        within = [(targets[index], weight) for index, weight in own if index < len(targets)]
+        if len(within) < len(own):
+            beyond = next(index for index, _ in own if index >= len(targets))
+            file.warn(
+                f"expression {name!r} binds morph target {beyond} of node {node}, "
+                f"which has {len(targets)}; left it out"
             )
-        if own:
-            yield _weighted_sum(name, [(targets[index], weight) for index, weight in own])
+        if within:
+            yield _weighted_sum(name, within)
 
 
 def _weighted_sum(name: str, weighted: list[tuple[Morph, float]]) -> Morph:
@@ -112,7 +119,7 @@ def _humanoid_1(extension: Json) -> VrmHumanoid:
     expressions = {
         name: tuple(
             (bind["node"], bind["index"], float(bind["weight"]))
-            for bind in expression.get("morphTargetBinds", ())
+            for bind in present(expression, "morphTargetBinds")
         )
         for kind in ("preset", "custom")
         for name, expression in stated.get(kind, {}).items()
@@ -121,21 +128,21 @@ def _humanoid_1(extension: Json) -> VrmHumanoid:
 
 
 def _humanoid_0(file: GltfFile, extension: Json) -> VrmHumanoid:
-    named = extension.get("humanoid", {}).get("humanBones", ())
+    named = present(extension.get("humanoid", {}), "humanBones")
     bones = {_bone_1(bone["bone"]): bone["node"] for bone in named}
     nodes_of_mesh: dict[int, list[int]] = {}
     for number, node in enumerate(file.all("nodes")):
         if "mesh" in node:
             nodes_of_mesh.setdefault(node["mesh"], []).append(number)
     expressions: dict[str, tuple[Bind, ...]] = {}
-    groups = extension.get("blendShapeMaster", {}).get("blendShapeGroups", ())
+    groups = present(extension.get("blendShapeMaster", {}), "blendShapeGroups")
     for number, group in enumerate(groups):
         preset = group.get("presetName", "unknown").lower()
         own = group.get("name") or label("blend shape", number, {})
         name = own if preset == "unknown" else _EXPRESSIONS_0.get(preset, preset)
         expressions[name] = tuple(
             (node, bind["index"], float(bind["weight"]) / 100.0)
-            for bind in group.get("binds", ())
+            for bind in present(group, "binds")
             for node in nodes_of_mesh.get(bind["mesh"], ())
         )
     return VrmHumanoid(bones, expressions)

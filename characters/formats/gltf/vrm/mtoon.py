@@ -20,7 +20,7 @@ def extension_of(file: GltfFile, number: int, material: Json) -> Json | None:
     if not all_properties or number >= len(all_properties):
         return None
     properties = all_properties[number]
-    if properties.get("shader") != "VRM/MToon":
+    if properties is None or properties.get("shader") != "VRM/MToon":
         return None
     return _convert(properties, material, len(file.all("textures")))
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from cubeling.characters.formats.gltf.document import Json, error_context
+from cubeling.characters.formats.gltf.document import Json, error_context, present
 from cubeling.characters.formats.gltf.file import GltfFile
 from cubeling.characters.formats.gltf.nodes import NodeTree
 from cubeling.characters.model.springs import (
@@ -36,6 +36,9 @@ class _Collider:
 
     radius: float
     """Its radius [m]."""
+
+
+_NO_COLLIDER = _Collider(-1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0)
 
 
 @dataclass(frozen=True)
@@ -118,11 +121,11 @@ def _springs_1(file: GltfFile, extension: Json) -> list[_Spring]:
     nodes = len(file.all("nodes"))
     colliders = [_collider_1(each) for each in extension.get("colliders", ())]
     groups = [
-        [colliders[index] for index in group.get("colliders", ()) if 0 <= index < len(colliders)]
+        [colliders[n] for n in (group or {}).get("colliders", ()) if 0 <= n < len(colliders)]
         for group in extension.get("colliderGroups", ())
     ]
     springs: list[_Spring] = []
-    for chain in extension.get("springs", ()):
+    for chain in present(extension, "springs"):
         own = _of_groups(groups, chain.get("colliderGroups", ()), nodes)
         joints = chain.get("joints", ())
         for joint, following in pairwise(joints):
@@ -142,7 +145,9 @@ def _springs_1(file: GltfFile, extension: Json) -> list[_Spring]:
     return springs
 
 
-def _collider_1(collider: Json) -> _Collider:
+def _collider_1(collider: Json | None) -> _Collider:
+    if collider is None:
+        return _NO_COLLIDER
     shape = collider["shape"]
     ball = shape.get("sphere") or shape.get("capsule") or {}
     x, y, z = ball.get("offset", (0.0, 0.0, 0.0))
@@ -154,9 +159,9 @@ def _collider_1(collider: Json) -> _Collider:
 def _springs_0(file: GltfFile, extension: Json) -> list[_Spring]:
     nodes = file.all("nodes")
     animation = extension.get("secondaryAnimation", {})
-    groups = [_colliders_0(group) for group in animation.get("colliderGroups", ())]
+    groups = [_colliders_0(group or {}) for group in animation.get("colliderGroups", ())]
     springs: list[_Spring] = []
-    for group in animation.get("boneGroups", ()):
+    for group in present(animation, "boneGroups"):
         own = _of_groups(groups, group.get("colliderGroups", ()), len(nodes))
         # Its coordinates are those of Unity, where characters face +z and their left is −x.
         down = group.get("gravityDir", {"y": -1.0})
@@ -179,7 +184,7 @@ def _springs_0(file: GltfFile, extension: Json) -> list[_Spring]:
 
 def _colliders_0(group: Json) -> list[_Collider]:
     colliders = []
-    for collider in group.get("colliders", ()):
+    for collider in present(group, "colliders"):
         offset = collider.get("offset", {})
         # Unity's z is the other way round.
         center = offset.get("x", 0.0), offset.get("y", 0.0), -offset.get("z", 0.0)
