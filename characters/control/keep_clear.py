@@ -63,6 +63,9 @@ GOAL_M, GOAL_S = 0.04, 0.2
 """A goal that moves further than this is another one [m]; how often a better one is looked for
 [s]."""
 
+SLACK_M = 0.04
+"""What further away an obstacle may be than the body is wide, to be looked at closely [m]."""
+
 NEAR_M = 0.45
 """Obstacles further away than this do not matter yet [m]."""
 
@@ -261,6 +264,14 @@ class KeepClear:
         if _is_exact(command):  # it knows how near it wants to be
             walking = STANDING
             obstacles = [each for each in obstacles if each.moves or each.holds(points)]
+        # Most of the time all are too far away to come near: that is cheap to tell.
+        wide = float(np.sqrt(((points[:, [0, 2]] - self._here) ** 2).sum(axis=1).max())) + SLACK_M
+        wide += AHEAD_S[-1] * float(np.linalg.norm(walking))
+        obstacles = [
+            each
+            for each in obstacles
+            if each.distance(self._here) < wide + 0.7 * float(np.linalg.norm(each.velocity))
+        ]
         if not obstacles:
             return None
         rooms = [ROOM_M + ROOM_S * float(np.linalg.norm(each.velocity)) for each in obstacles]
