@@ -99,7 +99,8 @@ class Reach:
         if inputs.clear or controls.shaken:
             self._gifts.scatter(body, now)
         events: tuple[str, ...] = ()
-        scene = facts = None
+        scene: ReachScene | None = None
+        facts: Facts | None = None
         if visible and body is not None and self._cube is not None:
             scene, facts, events = self._decide(controls, situation, body, self._cube)
         going = LocomotionIntent(facing=PLAYER_POSITION, exact=True)
