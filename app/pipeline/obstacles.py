@@ -78,4 +78,4 @@ def view_of(controls: CubeControls, camera: Intrinsics) -> View | None:
     (fx, _, cx), (_, fy, cy), _ = camera.matrix.tolist()
     width, height = camera.size
     planes = [[fx, 0, cx], [-fx, 0, width - cx], [0, fy, cy], [0, -fy, height - cy]]
-    return View(np.linalg.inv(table)[:3, 3], np.array(planes, float) @ table[:3])
+    return View(np.asarray(np.linalg.inv(table)[:3, 3], float), np.array(planes, float) @ table[:3])
