@@ -16,6 +16,7 @@ from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.app.pipeline.cube_advice import CubeAdvice
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
+from cubeling.app.pipeline.obstacles import Obstacles, view_of
 from cubeling.app.pipeline.picture_regions import picture_regions
 from cubeling.app.pipeline.props import BodyParts, PosedBody
 from cubeling.app.pipeline.registry import make_scenario
@@ -78,6 +79,7 @@ STATE_NAMES = (
     "_posed",
     "_body",
     "_attention",
+    "_obstacles",
     "_cube_advice",
     "_speaking",
     "_complexion",
@@ -184,6 +186,7 @@ class Playground:
         self._posed: PosedCharacter | None = None
         self._body: PosedBody | None = None
         self._attention = Attention(self._look, cube.edge)
+        self._obstacles = Obstacles(cube.edge)
         self._window = CubeWindow(cube, character, scenario.roles, self._inside)
         self._cube_advice = CubeAdvice(cube, self.intrinsics, self.known_cubes)
         self._speaking = Speaking()
@@ -334,6 +337,7 @@ class Playground:
                 state, controls, self.cube, self.character, posed, interior, matrix
             ),
             scenario=self.scenario.name,
+            has_intensity=self.scenario.has_intensity,
             line=self._speaking.line if command.speech is not None else None,
             interior=interior,
             appearance=appearance,
@@ -408,13 +412,15 @@ class Playground:
     def command(
         self, state: CubeState, controls: CubeControls, decision: Outcome, inputs: Inputs
     ) -> CharacterCommand:
-        """Return the command of a decision with gaze, emotion and speech.
+        """Return the command of a decision with gaze, emotion, speech, and what is in the way.
 
         Only this method adds the emotion: character, virtual robot and robot show one.
         """
         command = decision.command
         return replace(
             command,
+            obstacles=self._obstacles.update(state, controls),
+            view=view_of(controls, self.sight.lens),
             gaze=self._attention.update(state, controls, command),
             emotion=decision.emotion.emotion,
             speech=self._speaking.update(inputs.line, command, silence=inputs.clear),

@@ -90,6 +90,7 @@ class Resident:
                 action=command.action or ActionIntent("idle"),
                 gaze=None if command.gaze is None else eye,
                 behaviour=None,
+                obstacles=(),
             )
         )
         if size < MIN_SIZE:

@@ -49,6 +49,9 @@ class Step:
     scenario: str = ""
     """Name of the scenario that decided."""
 
+    has_intensity: bool = False
+    """Whether that scenario's actions have an intensity."""
+
     line: SpokenLine | None = None
     """What the character says, also if it has begun before; None for nothing."""
 

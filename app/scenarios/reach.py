@@ -13,6 +13,7 @@ from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.reach_behaviour import ReachingBody, ReachScene
 from cubeling.app.scenarios.reach_catching import ARRIVED_M, Catching, Prospect
 from cubeling.app.scenarios.reach_gifts import Gifts
+from cubeling.app.scenarios.reach_hints import Facts, facts_of, hint_of
 from cubeling.app.scenarios.reach_places import (
     Point,
     around,
@@ -52,27 +53,6 @@ ICONS = {
     "grasp": "take", "put": "give", "hold": "wait", "rejoice": "cheer",
 }  # fmt: skip
 """The card of what it does, where that has another name."""
-
-HINTS = {
-    "watch": "Move the cube: can I reach it?",
-    "touch": "I have it, nearly!",
-    "cheer": "Hooray! Now move the cube",
-    "stretch": "So far! Push the cube a little to me",
-    "shrug": "I cannot reach it",
-    "point": "There it is! I come",
-    "come": "Wait, I come to the cube",
-    "sulk": "Bring the cube nearer to me",
-    "shade": "So high! Bring the cube down to me",
-    "search": "Where is the cube? Show it to me",
-    "hold": "Put the cube down: the {thing} is for you",
-    "fetch": "Look, I get the {thing} for you",
-    "grasp": "Look, I take the {thing}",
-    "carry": "I bring you the {thing}",
-    "put": "Here is the {thing}",
-    "give": "Here you are",
-    "rejoice": "All for you! Move the cube, or shake it",
-}
-"""What to tell the player, by what it does."""
 
 
 class Reach:
@@ -119,10 +99,11 @@ class Reach:
         if inputs.clear or controls.shaken:
             self._gifts.scatter(body, now)
         events: tuple[str, ...] = ()
-        scene = None
+        scene: ReachScene | None = None
+        facts: Facts | None = None
         if visible and body is not None and self._cube is not None:
-            scene, events = self._decide(controls, situation, body, self._cube)
-        going = LocomotionIntent(facing=PLAYER_POSITION)
+            scene, facts, events = self._decide(controls, situation, body, self._cube)
+        going = LocomotionIntent(facing=PLAYER_POSITION, exact=True)
         if scene is not None and body is not None:
             going = _going(scene, body, situation.walks, self._edge)
         stands = ActionIntent("idle") if going.target is None else None
@@ -133,13 +114,16 @@ class Reach:
         )
         doing = "watch" if scene is None else scene.doing
         icon = gait(going.speed, situation.walks) if going.speed else ICONS.get(doing, doing)
-        hint = _hint(controls, doing, self._gifts.named)
+        if controls.position is None:
+            hint = "Put the cube on the table" if controls.visible else "Show me the cube"
+        else:
+            hint = hint_of(facts or Facts(doing))
         return Outcome(command, emotion, hint, icon, events=events, things=self._gifts.things(now))
 
     def _decide(
         self, controls: CubeControls, situation: Situation, body: PosedBody, cube: Point
-    ) -> tuple[ReachScene, tuple[str, ...]]:
-        """Return what it does, with what, and what has just happened."""
+    ) -> tuple[ReachScene, Facts, tuple[str, ...]]:
+        """Return what it does, with what and why, and what has just happened."""
         prospect = _prospect(controls, situation, body, cube, self._edge)
         events: tuple[str, ...] = ()
         self._gifts.end_pauses(prospect.now)
@@ -153,7 +137,8 @@ class Reach:
         there = stand is not None and gap(body.place, stand, 0.0) <= ARRIVED_M
         events += gifts.update(prospect.now, centre, body, free=free, there=there)
         doing = self._doing(free)
-        return ReachScene(
+        facts = facts_of(doing, prospect, self._catching, self._edge, gifts.named)
+        scene = ReachScene(
             doing=doing,
             cube=centre,
             touch=prospect.touch,
@@ -162,7 +147,8 @@ class Reach:
             stand=stand if doing in ("fetch", "carry") else None,
             held=bool(gifts.held),
             hand=gifts.hand,
-        ), events
+        )
+        return scene, facts, events
 
     def _is_free(self, controls: CubeControls) -> bool:
         """Whether it has time for the things: the cube rests, and it has one or is content."""
@@ -222,12 +208,6 @@ def _going(scene: ReachScene, body: PosedBody, walks: bool, edge: float) -> Loco
             facing = scene.goal[[0, 2]]
         elif scene.doing in FACING_CUBE:
             facing = scene.cube[[0, 2]]
-        return LocomotionIntent(facing=facing)
+        return LocomotionIntent(facing=facing, exact=True)
     speed = WALK_SPEED + SPEED_PER_M * float(np.linalg.norm(target - here[[0, 2]]))
-    return LocomotionIntent(min(speed, MAX_SPEED), target)
-
-
-def _hint(controls: CubeControls, doing: str, thing: str) -> str:
-    if controls.position is None:
-        return "Put the cube on the table" if controls.visible else "Show me the cube"
-    return HINTS[doing].format(thing=thing)
+    return LocomotionIntent(min(speed, MAX_SPEED), target, exact=True)

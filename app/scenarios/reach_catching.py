@@ -34,6 +34,9 @@ ARRIVED_M, LEFT_BEHIND_M = 0.015, 0.06
 MOVED_M = 0.03
 """A cube that has been touched is to be touched again when it has moved by this [m]."""
 
+ELSEWHERE_M = 0.06
+"""A cube that it gave up is worth another try when it has moved by this [m]."""
+
 SURPRISED = ("touch", "stretch", "point", "come", "sulk")
 """What it stops to look up to a cube that is held up high."""
 
@@ -89,6 +92,8 @@ class Catching:
         """Since when [s]."""
         self.gave_up_at = math.inf
         """The effort at which it gave up last."""
+        self.gave_up_on: NDArray[np.float64] | None = None
+        """Where the cube was then, (3,) [m]."""
         self.caught: NDArray[np.float64] | None = None
         """Where the cube was when it was touched last, (3,) [m]; None before."""
         self.high = False
@@ -112,7 +117,7 @@ class Catching:
             self.caught = prospect.cube
             return ("reached",)
         if self.doing == "shrug":
-            self.gave_up_at = prospect.effort
+            self.gave_up_at, self.gave_up_on = prospect.effort, prospect.cube
             return ("unreachable",)
         return ()
 
@@ -120,6 +125,11 @@ class Catching:
     def content(self) -> bool:
         """Whether the cube is where it was touched last."""
         return self.doing == "watch" and self.caught is not None
+
+    @staticmethod
+    def has_moved(prospect: Prospect, place: NDArray[np.float64] | None, by: float) -> bool:
+        """Return whether the cube is elsewhere than at a place, (3,), by a distance [m]."""
+        return place is None or math.dist(place, prospect.cube) >= by
 
     def look(self, prospect: Prospect) -> None:
         """Begin to look for a cube that is hidden, and stop when it is seen."""
@@ -150,10 +160,8 @@ def _try(catching: Catching, prospect: Prospect) -> Doing:
 
 
 def _watch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
-    caught = catching.caught
-    if caught is not None and math.dist(caught, prospect.cube) < MOVED_M:
-        return "watch"
-    return _try(catching, prospect)
+    moved = catching.has_moved(prospect, catching.caught, MOVED_M)
+    return _try(catching, prospect) if moved else "watch"
 
 
 def _cheer(catching: Catching, prospect: Prospect, spent: float) -> Doing:
@@ -179,16 +187,19 @@ def _stretch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
 
 
 def _shrug(catching: Catching, prospect: Prospect, spent: float) -> Doing:
-    if spent > SHRUG_S / 2 and prospect.effort <= EASY < catching.gave_up_at:
-        return "touch"
+    easy = prospect.effort <= EASY < catching.gave_up_at
+    if spent > SHRUG_S / 2 and (
+        easy or catching.has_moved(prospect, catching.gave_up_on, ELSEWHERE_M)
+    ):
+        return _try(catching, prospect)
     if spent <= SHRUG_S:
         return "shrug"
     return "come" if prospect.gap > ARRIVED_M and not catching.high else "sulk"
 
 
 def _point(catching: Catching, prospect: Prospect, spent: float) -> Doing:
-    if prospect.effort <= EASY:
-        return "touch"
+    if prospect.effort <= EASY or catching.high:
+        return _try(catching, prospect)
     return "come" if spent > POINT_S else "point"
 
 

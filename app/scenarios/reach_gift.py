@@ -43,6 +43,8 @@ class Gift:
         """Where it stands at first, (3,) [m]."""
         self.place = home
         """Where it stands, or will in a moment; in a hand: its offset from there, (3,) [m]."""
+        self.given = 0
+        """How often it was brought."""
         self.hand: Side | None = None
         """The hand that has it."""
         self._move = _Move(home, -math.inf, 1.0)
@@ -56,6 +58,7 @@ class Gift:
     def put(self, place: Point, palm: Point, now: float) -> None:
         """Let it go, to stand at a place."""
         self.hand, self.place = None, place
+        self.given += 1
         self._move = _Move(palm - GRIP, now, SETTLE_S)
 
     def hop(self, place: Point, palm: Point | None, now: float) -> None:

@@ -18,8 +18,8 @@ all are there."""
 
 HOMES: dict[str, tuple[float, float]] = {
     "flower": (-0.19, -0.05),
-    "balloon": (0.20, -0.09),
-    "flag": (0.17, 0.10),
+    "balloon": (0.17, 0.10),
+    "flag": (0.20, -0.09),
 }
 """Where each thing stands at first, (x, z) from where the cube was first seen [m]."""
 
@@ -136,7 +136,7 @@ class Gifts:
             self._begin("carry" if self.held else "wait", now)
             return ()
         if self.doing == "wait":
-            self._choose(cube, body, now)
+            self._choose(cube, now)
         elif self.doing == "fetch" and there:
             assert self.gift is not None
             self.hand = _nearer_side(body, self.gift.place)
@@ -149,12 +149,9 @@ class Gifts:
             return self._put(cube, body, now)
         return ()
 
-    def _choose(self, cube: Point, body: PosedBody, now: float) -> None:
-        """Begin with the nearest thing that is not beside the cube."""
-        here = body.place
-        self.gift = min(
-            self._away(cube), key=lambda each: math.dist(each.place, here), default=None
-        )
+    def _choose(self, cube: Point, now: float) -> None:
+        """Begin with a thing that is not beside the cube: each one once before any again."""
+        self.gift = min(self._away(cube), key=lambda each: each.given, default=None)
         if self.gift is not None:
             self._begin("fetch", now)
 

@@ -39,6 +39,16 @@ ACTION_COLORS: dict[str, Color] = {
     "hop": bgr("#3a7bd5"),
     "kiss": bgr("#e8557f"),
     "shout": bgr("#f0742b"),
+    "reach": bgr("#d98a1f"),
+    "stretch": bgr("#d98a1f"),
+    "point": bgr("#d98a1f"),
+    "cheer": bgr("#43a35f"),
+    "take": bgr("#43a35f"),
+    "carry": bgr("#43a35f"),
+    "give": bgr("#43a35f"),
+    "shrug": bgr("#7d7fa8"),
+    "wait": bgr("#7d7fa8"),
+    "search": bgr("#7d7fa8"),
 }
 """Colours of the character's actions."""
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from cubeling.characters.control.controllers import (
     default_height,
     first_suitable,
 )
+from cubeling.characters.control.keep_clear import KeepClear
 from cubeling.characters.control.layers import FrameContext, LayerFactory, apply_layers, layers_of
 from cubeling.characters.control.tagged_gestures import TaggedGestures
 from cubeling.characters.errors import CharacterError
@@ -75,6 +77,7 @@ class Animator:
         """What moves it."""
         used = layers_of(character) if layers is None else layers
         self._layers = [layer(character, seed) for layer in used]
+        self._keep_clear = KeepClear(character)
         self._expressivity = ExpressivityFilter()
         self._tagged = TaggedGestures(character)
         self._rest = 1.0
@@ -111,7 +114,9 @@ class Animator:
         elapsed = min(max(elapsed, 0.0), MAX_TIME_STEP_S)
         command = self._tagged.add(command)
         tempo = math.sqrt(self._expressivity.value.tempo)
-        frame = self.controller.update(command, elapsed, tempo)
+        directed = self._keep_clear.direct(command, self.walks)
+        frame = self.controller.update(directed, elapsed, tempo)
+        frame = self._keep_clear.keep(frame, command, elapsed)
         activity = max(float(frame.acting), min(2.0 * frame.effort, 1.0))
         self._rest = low_pass(self._rest, 1.0 - activity, elapsed, REST_LAG_S)
         context = FrameContext(
@@ -124,6 +129,7 @@ class Animator:
             self._rest,
         )
         pose, _ = apply_layers(self._layers, frame.pose, context)
+        self._keep_clear.learn(pose, context.table_from_character)
         return PosedCharacter(
             pose=pose,
             table_from_character=context.table_from_character,
@@ -140,14 +146,15 @@ def _check(command: CharacterCommand) -> None:
     """Refuse numbers that are not finite: they would stay in the state for ever."""
     numbers = [command.timestamp, command.speed, command.weight]
     going = command.locomotion or LocomotionIntent()
-    for point in (going.target, going.facing, command.gaze):
+    boxes = [(each.table_from_box.ravel(), each.velocity) for each in command.obstacles]
+    for point in (going.target, going.facing, command.gaze, *chain.from_iterable(boxes)):
         if point is not None:
             numbers += [float(value) for value in point]
     if not all(map(math.isfinite, numbers)):
         raise CharacterError(
             f"command at {command.timestamp} s has a number that is not finite: speed "
             f"{command.speed}, weight {command.weight}, target {going.target}, facing "
-            f"{going.facing}, gaze {command.gaze}; leave out what is not known"
+            f"{going.facing}, gaze {command.gaze}, {len(boxes)} obstacles; leave out the unknown"
         )
 
 

@@ -9,6 +9,7 @@ from cubeling.affect import Emotion
 from cubeling.characters.behaviour.intents import BehaviourIntent
 from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from cubeling.characters.locomotion.gaits import IDLE_SPEED
+from cubeling.characters.locomotion.obstacles import Obstacle, View
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.speech.speech import Utterance
 
@@ -28,6 +29,10 @@ class LocomotionIntent:
 
     facing: NDArray[np.float64] | None = None
     """A point to turn to when standing, (x, z) in the table frame [m]; None to keep the heading."""
+
+    exact: bool = False
+    """Whether it must be this place, because hands reach something from there; else the character
+    may stand nearby, where it is seen."""
 
 
 @dataclass(frozen=True)
@@ -91,6 +96,12 @@ class CharacterCommand:
 
     behaviour: BehaviourIntent | None = None
     """What hands, head, face, eyes and posture are to do besides; None for nothing."""
+
+    obstacles: tuple[Obstacle, ...] = ()
+    """What the character keeps out of."""
+
+    view: View | None = None
+    """How the table is seen: it prefers places where it is seen, too; None for any place."""
 
     @property
     def speaks(self) -> bool:

@@ -56,6 +56,11 @@ def icon_paths(name: str) -> list[Array]:
     return icons()[name]
 
 
+def has_icon(name: str) -> bool:
+    """Return whether there is an icon of a name."""
+    return name in icons()
+
+
 def icon_mask(name: str, pixels: int) -> Image:
     """Draw an icon as the coverage of each pixel, 0 to 255, (pixels, pixels).
 
@@ -147,10 +152,91 @@ def _shout() -> list[Array]:
     return [burst, _hole(stroke), _hole(_disc(0.5, 0.69, 0.055))]
 
 
+def _person(
+    left: tuple[Point, ...], right: tuple[Point, ...], *more: Array, x: float = 0.5
+) -> list[Array]:
+    """Return a person who stands, with an elbow and a hand for each arm, and what is beside it."""
+    return [
+        _disc(x, 0.2, 0.115),
+        *_stroke(0.22, (x, 0.45), (x, 0.58)),
+        *_stroke(0.09, (x - 0.08, 0.4), *left),
+        *_stroke(0.09, (x + 0.08, 0.4), *right),
+        *_stroke(0.11, (x - 0.05, 0.62), (x - 0.07, 0.93)),
+        *_stroke(0.11, (x + 0.05, 0.62), (x + 0.07, 0.93)),
+        *more,
+    ]
+
+
+def _block(x: float, y: float, side: float) -> Array:
+    return np.array([(x, y), (x + side, y), (x + side, y + side), (x, y + side)])
+
+
+def _flower(x: float, y: float) -> list[Array]:
+    petals = [_disc(x + 0.075 * math.cos(a), y + 0.075 * math.sin(a), 0.06)
+              for a in np.arange(5) * 0.4 * math.pi]  # fmt: skip
+    return [*petals, _hole(_disc(x, y, 0.035)), *_stroke(0.04, (x, y + 0.1), (x, y + 0.32))]
+
+
+def _actions() -> dict[str, list[Array]]:
+    """Build the icons of what a character does that reaches for the cube and carries things."""
+    hanging = ((0.3, 0.5), (0.29, 0.63))
+    low, near = ((0.19, 0.5), (0.17, 0.63)), ((0.55, 0.49), (0.68, 0.53))
+    return {
+        "reach": _person(low, ((0.5, 0.46), (0.64, 0.5)), _block(0.7, 0.4, 0.26), x=0.34),
+        "stretch": _person(
+            low,
+            ((0.5, 0.3), (0.63, 0.2)),
+            _block(0.78, 0.04, 0.2),
+            *_stroke(0.045, (0.64, 0.07), (0.7, 0.03)),
+            *_stroke(0.045, (0.72, 0.3), (0.78, 0.34)),
+            x=0.34,
+        ),
+        "shrug": _person(((0.28, 0.52), (0.15, 0.4)), ((0.72, 0.52), (0.85, 0.4))),
+        "point": _person(
+            low,
+            ((0.55, 0.4), (0.7, 0.4)),
+            np.array([(0.74, 0.26), (0.97, 0.4), (0.74, 0.54)]),
+            x=0.34,
+        ),
+        "cheer": _person(
+            ((0.26, 0.3), (0.2, 0.12)),
+            ((0.74, 0.3), (0.8, 0.12)),
+            *_stroke(0.045, (0.06, 0.3), (0.12, 0.33)),
+            *_stroke(0.045, (0.94, 0.3), (0.88, 0.33)),
+        ),
+        "wait": [
+            *_stroke(0.09, (0.2, 0.07), (0.8, 0.07)),
+            *_stroke(0.09, (0.2, 0.93), (0.8, 0.93)),
+            np.array(
+                [(0.25, 0.12), (0.75, 0.12), (0.54, 0.5), (0.75, 0.88), (0.25, 0.88), (0.46, 0.5)]
+            ),
+            _hole(np.array([(0.34, 0.18), (0.66, 0.18), (0.6, 0.28), (0.4, 0.28)])),
+        ],
+        "search": [
+            _disc(0.41, 0.41, 0.35),
+            _hole(_disc(0.41, 0.41, 0.24)),
+            *_stroke(0.15, (0.68, 0.68), (0.88, 0.88)),
+        ],
+        "take": _person(low, near, *_flower(0.8, 0.42), x=0.34),
+        "give": _person(
+            low,
+            near,
+            *_flower(0.8, 0.16),
+            np.array([(0.68, 0.66), (0.92, 0.66), (0.8, 0.84)]),
+            x=0.34,
+        ),
+        "carry": _person(hanging, ((0.68, 0.5), (0.8, 0.4)), *_flower(0.84, 0.14)),
+    }
+
+
 @functools.cache
 def icons() -> dict[str, list[Array]]:
-    """Build all icons. Those in `ICON_COLOURS` are printed on faces, the others in instructions."""
+    """Build all icons.
+
+    Those in `ICON_COLOURS` are printed on faces, the others in instructions or on the screen.
+    """
     return {
+        **_actions(),
         "stand": [
             _disc(0.5, 0.155, 0.125),
             *_stroke(0.24, (0.5, 0.42), (0.5, 0.56)),

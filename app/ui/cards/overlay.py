@@ -32,7 +32,7 @@ from cubeling.app.ui.palette import (
     between,
     mood_color,
 )
-from cubeling.tracking import ICON_COLOURS
+from cubeling.tracking import has_icon
 
 CARD_HEIGHT = 108.0
 BAR_Y = 70.0
@@ -110,9 +110,8 @@ def cards_over(
     if step.controls.camera_from_table is not None:
         name, command = step.outcome.icon, step.command
         moves = command.activity == "move" or name in ("stand", "walk", "run", "hop")
-        cards["bottom left"] = _action(
-            name, moves, command.speed if moves else command.weight, scale
-        )
+        weight = command.weight if name == "idle" or step.has_intensity else None
+        cards["bottom left"] = _action(name, moves, command.speed if moves else weight, scale)
     if step.close_up is not None and width >= MIN_VIRTUAL_ROBOT_WIDTH:
         cards["top left"] = _close_up(step.close_up, scale)
     sizes = {home: canvas.size for home, canvas in cards.items()}
@@ -169,8 +168,10 @@ def _hint(words: str, width: float, scale: float) -> Card:
 
 
 @lru_cache(maxsize=8)
-def _action(name: str, moves: bool, strength: float, scale: float) -> Canvas:
-    """Draw an action with its speed if it moves, else with its weight."""
+def _action(name: str, moves: bool, strength: float | None, scale: float) -> Canvas:
+    """Draw an action with its speed if it moves, else with its weight; None if it has none."""
+    if strength is None:
+        return _plain_action(name, scale)
     canvas = _action_background(name, moves, scale).copy()
     if moves:
         _speed(canvas, strength, ACTION_COLORS.get(name, INK))
@@ -182,12 +183,7 @@ def _action(name: str, moves: bool, strength: float, scale: float) -> Canvas:
 @lru_cache(maxsize=16)
 def _action_background(name: str, moves: bool, scale: float) -> Canvas:
     """Draw what does not change during an action."""
-    canvas = Canvas(ACTION_CARD_WIDTH, CARD_HEIGHT, scale)
-    canvas.disc(54, 54, 38, ACTION_COLORS.get(name, INK))
-    if name in ICON_COLOURS:
-        canvas.icon(32, 32, 44, name, PAPER)
-    else:  # a scenario may name an action that has no icon
-        canvas.text(54, 69, name[:1].upper(), 42, PAPER, "middle")
+    canvas = _action_icon(name, scale)
     canvas.text(108, 42, "Idle" if name == "stand" else name.title(), 28, INK)
     canvas.bar(ACTION_BAR_X, BAR_Y, ACTION_BAR_WIDTH, 10, RULE)
     if moves:
@@ -197,6 +193,25 @@ def _action_background(name: str, moves: bool, scale: float) -> Canvas:
     else:
         canvas.text(ACTION_BAR_X, 95, "a little", 15, QUIET)
         canvas.text(ACTION_BAR_X + ACTION_BAR_WIDTH, 95, "a lot", 15, QUIET, "right")
+    return canvas
+
+
+@lru_cache(maxsize=16)
+def _plain_action(name: str, scale: float) -> Canvas:
+    """Draw an action without intensity."""
+    canvas = _action_icon(name, scale)
+    canvas.text(108, 65, name.title(), 30, INK)
+    return canvas
+
+
+def _action_icon(name: str, scale: float) -> Canvas:
+    """Return the card of an action, with its icon only."""
+    canvas = Canvas(ACTION_CARD_WIDTH, CARD_HEIGHT, scale)
+    canvas.disc(54, 54, 38, ACTION_COLORS.get(name, INK))
+    if has_icon(name):
+        canvas.icon(32, 32, 44, name, PAPER)
+    else:  # a scenario may name an action that has no icon
+        canvas.text(54, 69, name[:1].upper(), 42, PAPER, "middle")
     return canvas
 
 

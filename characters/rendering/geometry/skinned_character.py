@@ -5,13 +5,13 @@ from collections.abc import Sequence
 import moderngl
 import numpy as np
 
+from cubeling.characters.body.extreme_vertices import SkinnedPoints
 from cubeling.characters.face.action_units import ActionUnits
 from cubeling.characters.rendering.geometry.character_geometry import (
     CharacterGeometry,
     are_vanished,
 )
 from cubeling.characters.rendering.geometry.detail_levels import chosen_level
-from cubeling.characters.rendering.geometry.extreme_vertices import SkinnedPoints
 from cubeling.characters.rendering.geometry.face_texture import FaceTexture
 from cubeling.characters.rendering.geometry.morph_mixer import MorphMixer
 from cubeling.characters.rendering.geometry.surfaces import (

@@ -7,9 +7,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.characters.body.extreme_vertices import extreme_vertices
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.mesh import Material, Mesh, Morph
-from cubeling.characters.rendering.geometry.extreme_vertices import extreme_vertices
 from cubeling.characters.rendering.geometry.morph_mixer import merge_morphs
 from cubeling.characters.rendering.geometry.places import are_whole
 from cubeling.characters.skeleton.pose import Array

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from cubeling.characters import Character
+from cubeling.characters.body.extreme_vertices import SkinnedPoints
 from cubeling.characters.model.mesh import Material
-from cubeling.characters.rendering.geometry.extreme_vertices import SkinnedPoints
 from cubeling.characters.rendering.geometry.skinned_character import SkinnedCharacter
 from cubeling.characters.rendering.geometry.vertices import CasterRun, CharacterVertices
 from cubeling.characters.rendering.programs import ShaderPrograms

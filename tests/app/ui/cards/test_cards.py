@@ -58,6 +58,22 @@ def test_an_action_without_an_icon_has_a_card_with_its_name(a_step):
     assert (wave != idle).any()
 
 
+def test_only_an_action_with_an_intensity_has_its_slider(a_step):
+    """The knob of another would never move."""
+    step = a_step(None)
+    step = replace(step, controls=replace(step.controls, camera_from_table=np.eye(4)))
+
+    def card(weight, has_intensity):
+        command = replace(step.command, locomotion=None, action=ActionIntent("wave", weight))
+        outcome = replace(step.outcome, icon="wave", command=command)
+        shown = replace(step, outcome=outcome, has_intensity=has_intensity)
+        image = np.full((720, 1280, 3), 90, np.uint8)
+        return overlay(image, shown, RobotView("ready", 0.0, "neutral"))
+
+    np.testing.assert_array_equal(card(-0.5, False), card(0.5, False))
+    assert (card(-0.5, True) != card(0.5, True)).any()
+
+
 texts = st.lists(st.text("iamWé", min_size=1, max_size=12), max_size=20).map(
     lambda words: " ".join(words)[:76]
 )
