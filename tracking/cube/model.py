@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
@@ -180,17 +181,17 @@ class CubeModel:
         """All sides, with and without markers."""
         return self.body or box_sides(self.edge, self.edge, self.edge)
 
-    @property
+    @cached_property
     def vertices(self) -> Array:
         """Corners of all sides, each once, (N, 3) [m]."""
         return np.unique(np.concatenate([side.corners for side in self.sides]), axis=0)
 
-    @property
+    @cached_property
     def paper(self) -> float:
         """Side of the square around the middle of each marker that has no other print [m]."""
         return self._least(Side.room) if self.body else self.edge
 
-    @property
+    @cached_property
     def white(self) -> float:
         """Side of the square around the middle of each marker that is white [m].
 
