@@ -66,6 +66,7 @@ def test_a_photograph_is_tracked_as_if_the_camera_had_moved() -> None:
         assert sharp.visible
         assert blurred.visible
         assert sharp.camera_from_cube is not None
+        assert blurred.camera_from_cube is not None
         off = se3.delta(blurred.camera_from_cube, sharp.camera_from_cube)
         assert np.linalg.norm(off[:3]) < 0.003
         assert off @ np.linalg.solve(blurred.covariance, off) < CHI2_95_PERCENT
