@@ -15,6 +15,9 @@ from cubeling.tracking.gestures.gestures import CubeGestures
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.photographs import sequence
 from tests.bench.photographs.dodecahedron import camera, paths, photograph
+from tests.bench.photographs.variants import VARIANTS
+from tests.bench.tracking.scoring import CHI2_95_PERCENT
+from tests.tracking.showing import show_until_decided
 
 pytestmark = pytest.mark.skipif(not paths(), reason="the photographs are not on this machine")
 
@@ -48,6 +51,25 @@ def test_a_hand_held_dodecahedron_is_tracked_through_its_photographs() -> None:
     assert shifts.max() < 0.005
     assert np.rad2deg(np.median(turns)) < 0.5
     assert np.rad2deg(turns.max()) < 2.5
+
+
+@pytest.mark.slow(reason="blurred photographs are searched to the end")
+def test_a_photograph_is_tracked_as_if_the_camera_had_moved() -> None:
+    """By 10 px, two of its cells: within what is stated of where the sharp one shows the body."""
+    body = CubeModel.load(sequence.BODY_FILE)
+    for number in (3, 51):
+        picture = photograph(number)
+        sharp, blurred = (
+            show_until_decided(CubeTracker(body, camera()), each)[0]
+            for each in (picture, VARIANTS["blurred"](picture, number).picture)
+        )
+        assert sharp.visible
+        assert blurred.visible
+        assert sharp.camera_from_cube is not None
+        assert blurred.camera_from_cube is not None
+        off = se3.delta(blurred.camera_from_cube, sharp.camera_from_cube)
+        assert np.linalg.norm(off[:3]) < 0.003
+        assert off @ np.linalg.solve(blurred.covariance, off) < CHI2_95_PERCENT
 
 
 @pytest.mark.full

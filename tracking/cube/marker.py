@@ -22,9 +22,12 @@ def cell_size(cube: CubeModel) -> float:
     return cube.marker_size / len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
 
 
-def black_texels(cube: CubeModel, cells: Flags, side: int) -> Flags:
-    """Return which texels of the paper are black where its marker has these cells, (side, side)."""
-    texel = (np.arange(side) + 0.5) / side * cube.paper - cube.paper / 2
+def black_texels(cube: CubeModel, cells: Flags, side: int, width: float) -> Flags:
+    """Return which texels of a square around a marker are black where it has these cells.
+
+    `side` is how many there are along each side of the square, and `width` how long it is [m].
+    """
+    texel = (np.arange(side) + 0.5) / side * width - width / 2
     cell = (texel + cube.marker_size / 2) / cube.marker_size * len(cells)
     inside = (cell >= 0) & (cell < len(cells))
     index = np.clip(cell.astype(int), 0, len(cells) - 1)

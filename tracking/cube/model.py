@@ -1,6 +1,8 @@
 """The model of a cube, or of another body: its TOML file, and its markers in space."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
@@ -179,18 +181,32 @@ class CubeModel:
         """All sides, with and without markers."""
         return self.body or box_sides(self.edge, self.edge, self.edge)
 
-    @property
+    @cached_property
     def vertices(self) -> Array:
         """Corners of all sides, each once, (N, 3) [m]."""
         return np.unique(np.concatenate([side.corners for side in self.sides]), axis=0)
 
-    @property
+    @cached_property
     def paper(self) -> float:
         """Side of the square around the middle of each marker that has no other print [m]."""
+        return self._least(Side.room) if self.body else self.edge
+
+    @cached_property
+    def white(self) -> float:
+        """Side of the square around the middle of each marker that is white [m].
+
+        Its corners may lie beyond a side that is no square.
+        """
         if not self.body:
             return self.edge
+        cells = aruco_dictionary(self.dictionary).markerSize + 2
+        most = self.marker_size * (1 + 2 * WHITE_CELLS / cells)
+        return max(self.paper, min(self._least(Side.breadth), most))
+
+    def _least(self, room_of: Callable[[Side, tuple[float, float]], float]) -> float:
+        """Return the least room of all markers: on their sides, and between those of one side."""
         sides = {side.name: side for side in self.body}
-        room = [sides[face.side].room(face.at) for face in self.faces]
+        room = [room_of(sides[face.side], face.at) for face in self.faces]
         for number, one in enumerate(self.faces):
             for other in self.faces[:number]:
                 if one.side == other.side:
@@ -258,6 +274,9 @@ MARKER_KEYS = ("marker_id", "at_mm", "roll_deg", "corners_mm")
 
 FACE_KEYS = ("name", *MARKER_KEYS, "role", "icon", "marker")
 """The keys of each of its [[face]] tables, besides `SIDE_KEYS` of a body."""
+
+WHITE_CELLS = 1.5
+"""How far around a marker the white of a body's side is used [cells], as much as cubes have."""
 
 BORDER_CELLS = 1.0
 """White border around the marker of a side that has no outline [cells]."""

@@ -86,11 +86,20 @@ class Side:
 
         Its sides are parallel to the axes of the side; negative where the place is outside.
         """
+        inward, depths = self._depths(at)
+        return 2 * float((depths / np.abs(inward).sum(axis=1)).min())
+
+    def breadth(self, at: tuple[float, float]) -> float:
+        """Diameter of the largest circle about a place on the side that does not leave it [m]."""
+        return 2 * float(self._depths(at)[1].min())
+
+    def _depths(self, at: tuple[float, float]) -> tuple[Array, Array]:
+        """Inward unit normals of the edges, (N, 2), and how far inside of each a place is [m]."""
         edges = np.roll(self.outline, -1, axis=0) - self.outline
         # Inward, as the outline runs counter-clockwise.
         inward = np.stack([-edges[:, 1], edges[:, 0]], axis=1)
-        depths = ((np.asarray(at) - self.outline) * inward).sum(axis=1)
-        return 2 * float((depths / np.abs(inward).sum(axis=1)).min())
+        inward /= np.linalg.norm(inward, axis=1, keepdims=True)
+        return inward, ((np.asarray(at) - self.outline) * inward).sum(axis=1)
 
     def scale(self, factor: float) -> Self:
         """Return the same side of a body in another size."""

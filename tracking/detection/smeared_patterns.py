@@ -67,8 +67,9 @@ def _smeared_patterns(dictionary: str, marker_ids: tuple[int, ...], count: int) 
     trackers of a cube share them.
     """
     cells = [marker_cells(dictionary, number) for number in marker_ids]
-    turned = [np.rot90(each, turn) for each in cells for turn in range(4)]
-    patterns = _normalize(np.stack([_smear(each, count) for each in turned]))
+    smeared = [_smear(each, count) for each in cells]
+    turned = [_turned(each, turn, count) for each in smeared for turn in range(4)]
+    patterns = _normalize(np.stack(turned))
     patterns.flags.writeable = False
     return patterns
 
@@ -85,6 +86,16 @@ def _smear(black: Flags, count: int) -> Floats:
                                borderType=cv2.BORDER_REPLICATE)  # fmt: skip
         drawn.append(cv2.resize(blurred, (count, count), interpolation=cv2.INTER_AREA).ravel())
     return np.asarray(drawn, np.float32)
+
+
+def _turned(smeared: Floats, turn: int, count: int) -> Floats:
+    """Turn a marker with every blur by quarters: a quarter turn also turns the blurs."""
+    pictures = np.rot90(smeared.reshape(-1, count, count), turn, axes=(1, 2))
+    if turn % 2:
+        by_length = pictures[1:].reshape(len(SMEARS_CELLS), DIRECTIONS, count, count)
+        crosswise = np.roll(by_length, DIRECTIONS // 2, axis=1).reshape(-1, count, count)
+        pictures = np.concatenate([pictures[:1], crosswise])
+    return np.asarray(pictures.reshape(len(pictures), -1), np.float32)
 
 
 @cache

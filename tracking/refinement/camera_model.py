@@ -37,7 +37,7 @@ class CameraModel:
     """What is known of a camera at one moment."""
 
     exposure: float
-    """Exposure time [s]."""
+    """Exposure time [s]; 0 where blur ran backwards."""
 
     exposure_known: bool
     """Whether it was measured often enough."""
@@ -53,8 +53,13 @@ class CameraModel:
 
     @property
     def readout_share(self) -> float:
-        """That time in exposure times; 0 where blur that runs backwards made the exposure 0."""
+        """That time in exposure times; 0 where the exposure is 0."""
         return self.readout / self.exposure if self.exposure > 0 else 0.0
+
+    @property
+    def sought_exposure(self) -> float:
+        """Exposure with which an image is studied [s]: with 0 none would show any blur."""
+        return self.exposure or FIRST_EXPOSURE_S
 
 
 @dataclass(frozen=True)
@@ -129,7 +134,8 @@ class ExposureEstimator:
     def learn(self, weighted_motion: Array, information: Array, velocity: Array) -> None:
         """Learn from `Alignment.motion_information` of a cube with a known velocity, (6,)."""
         strength = float(velocity @ information @ velocity)
-        if strength * self.exposure**2 < MIN_MOTION_INFORMATION:
+        # From 0, no measurement would ever count.
+        if strength * (self.exposure or FIRST_EXPOSURE_S) ** 2 < MIN_MOTION_INFORMATION:
             return
         sample = np.clip(velocity @ weighted_motion / strength, 0.0, MAX_EXPOSURE_S)
         self._samples.append(float(sample))

@@ -43,6 +43,9 @@ how much one or more of them do: twice the logarithm of how seldom a hand covers
 MAX_FINE_FACES = 2
 """More faces than this determine a pose well enough with few samples."""
 
+MIN_LOCKED = 0.7
+"""Correlation from which on an alignment has found its place, and blur would lead nowhere else."""
+
 MIN_JOINING = 0.3
 """Correlation from which on another face may join the alignment."""
 
@@ -168,7 +171,7 @@ class CellSearch:
         """Align the faces that were read."""
         assert run.patch is not None
         found = self._aligner.align(run.patch, run.start, run.read)
-        good = found and max(found.correlations.values()) > MIN_CORRELATION
+        good = found and max(found.correlations.values()) > MIN_LOCKED
         return replace(run, aligned=found, step="weigh" if good else "align coarsely")
 
     def _align_coarsely(self, run: CellRun) -> CellRun:
@@ -196,6 +199,9 @@ class CellSearch:
         aligned = replace(aligned, markers=match.alignment.markers)
         # With many faces the pose is known; others would cost more than they tell.
         joins = MAX_FINE_FACES >= len(aligned.correlations) < len(_joining(match))
+        if not (joins or match.proved):
+            # More samples do not make a likeness a proof.
+            return replace(run, match=replace(match, alignment=aligned), step="")
         return replace(
             run, aligned=aligned, match=match, step="join" if joins else "measure"
         ).ended_if_known()

@@ -200,7 +200,7 @@ def _mipmaps(texture: Floats) -> list[Floats]:
 
 def _print_marker(texture: Floats, cube: CubeModel, face: Face) -> None:
     cells = np.rot90(marker_cells(cube.dictionary, face.marker_id), -(face.roll_deg // 90))
-    texture[black_texels(cube, cells, FACE_TEXELS)] = BLACK
+    texture[black_texels(cube, cells, FACE_TEXELS, cube.paper)] = BLACK
 
 
 def _print_icons(texture: Floats, cube: CubeModel, face: Face) -> None:

@@ -120,7 +120,7 @@ class LocalTracker:
             return LocalMatch(found)
         pose = found.camera_from_cube
         velocity = track.motion(pose, found.covariance, timestamp)[0]
-        motion = velocity * camera.exposure
+        motion = velocity * camera.sought_exposure
         extent = self._footprint.blur_extent(motion)
         if not shows_exposure(extent, self._footprint.pixels_per_cell(pose)):
             return LocalMatch(found)

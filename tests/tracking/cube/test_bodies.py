@@ -73,6 +73,15 @@ def test_a_box_carries_several_markers_on_a_side(tmp_path):
     assert box.paper * 1000 == pytest.approx(40)
 
 
+def test_the_white_around_a_marker_may_have_corners_beyond_its_side(tmp_path):
+    cube, box = CubeModel.load("companion"), load(tmp_path, BOX)
+    assert (cube.white, box.white) == (cube.edge, pytest.approx(box.paper))
+    body = CubeModel.load(Path(__file__).parents[1] / "dodecahedron.toml")
+    cell = body.marker_size / 8
+    assert (body.paper - body.marker_size) / 2 < 0.6 * cell
+    assert (body.white - body.marker_size) / 2 == pytest.approx(1.5 * cell)
+
+
 def test_a_side_is_placed_by_centre_normal_and_up(tmp_path):
     body = load(tmp_path, PYRAMID)
     assert [face.name for face in body.faces] == ["slope", "back"]

@@ -62,6 +62,19 @@ def test_the_true_lean_has_more_evidence_than_the_mirrored_one(
     assert se3.angle_between(right.alignment.camera_from_cube, pose) < np.deg2rad(2)
 
 
+def test_a_likeness_is_not_measured_with_more_samples() -> None:
+    """A marker of another cube in the place of the front's takes no more than three steps."""
+    pose = held(0.5, 0.1, 0.2, at=(0.02, 0.01, 0.6))
+    front = replace(OTHER, faces=(OTHER.face("front"),))
+    search, steps = CellSearch(with_faces("front"), Projection(CAMERA)), []
+    run = search.begin(picture(drawn(front, pose)), pose, TONE, ("front",))
+    while not run.done:
+        steps.append(run.step)
+        run = search.advance(run)
+    assert not (run.match and run.match.proved)
+    assert set(steps) <= {"align", "align coarsely", "weigh"}
+
+
 @pytest.mark.parametrize("lean", [0.5, 0.8])
 def test_a_lone_face_near_by_tells_its_lean_by_perspective(lean: float) -> None:
     pose = held(lean, 0.1, 0.2, at=(0.02, 0.01, 0.6))

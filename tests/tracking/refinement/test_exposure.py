@@ -52,6 +52,17 @@ def test_noise_across_the_motion_does_not_matter() -> None:
     assert estimator.exposure == pytest.approx(0.0167, rel=1e-6)
 
 
+def test_an_exposure_that_blur_made_zero_is_measured_again() -> None:
+    """Blur that seems to run backwards, as of a hand that is seen too late, leaves nothing."""
+    estimator, random = ExposureEstimator(), np.random.default_rng(3)
+    for _ in range(EXPOSURE_SAMPLES):
+        estimator.learn(*blurred(random, -0.0167))
+    assert estimator.exposure == 0
+    for _ in range(EXPOSURE_SAMPLES):
+        estimator.learn(*blurred(random, 0.0167))
+    assert estimator.exposure == pytest.approx(0.0167, rel=0.05)
+
+
 def test_slow_motion_changes_nothing() -> None:
     estimator, random = ExposureEstimator(), np.random.default_rng(2)
     for _ in range(3 * EXPOSURE_SAMPLES):

@@ -1,6 +1,6 @@
 """One robust least-squares step on the edges of the cube, and its covariance."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -43,6 +43,9 @@ INDEPENDENT_SHARE = 0.5
 
 PIXEL_PHASE_ERROR_PX = 0.02
 """Error that all points of a line have in common if they lie alike on the pixel grid."""
+
+DOUBTFUL_DEVIATIONS = 1.5
+"""A k1 that differs from none by less than so many standard deviations may be noise."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +152,7 @@ def _is_printed(profiles: EdgeProfiles, measured: EdgeMeasurements) -> Flags:
 
 
 def covariance(fit: EdgeFit, lines: Indices, pixels: Array) -> Array:
-    """Covariance of the pose delta, (6, 6), with each straight line as one measurement.
+    """Covariance of the solution, (K, K), with each straight line as one measurement.
 
     The points of a line share paper, light and their phase on the pixel grid. So this is the
     sandwich estimator for clusters (Liang and Zeger, 1986): normal⁻¹ (Σ s sᵀ) normal⁻¹, with s the
@@ -162,19 +165,37 @@ def covariance(fit: EdgeFit, lines: Indices, pixels: Array) -> Array:
     weighted = fit.rows * fit.weights[:, None]
     scores = np.add.reduceat(weighted * fit.residual[:, None], starts) @ inverse
     # The solution has used up seven degrees of freedom.
-    spread = scores[:, :6].T @ scores[:, :6] * (count / max(count - 7, 1))
+    spread = scores.T @ scores * (count / max(count - 7, 1))
     # Reduced chi square of independent residuals.
     chi = float((fit.weights * fit.residual**2).sum()) / max(1.0, float(fit.robust.sum()) - 7)
     return np.asarray(
         spread
-        + inverse[:6, :6] * max(chi, 0.05) * INDEPENDENT_SHARE
+        + inverse * max(chi, 0.05) * INDEPENDENT_SHARE
         + _phase_covariance(inverse, starts, weighted, pixels),
         np.float64,
     )
 
 
+def without_doubtful_k1(fit: EdgeFit, placed_k1: float, variance: float) -> EdgeFit:
+    """Take out of a fit what of its k1, with a variance, may be noise, and let the pose follow.
+
+    An unknown k1 makes distances several times less exact, and most lenses that are drawn or that
+    were rectified have none. So it counts as far as it stands out (Breiman, 1995, "Better subset
+    regression using the nonnegative garrote"). `placed_k1` is that of the profiles.
+    """
+    k1 = placed_k1 + float(fit.solution[8])
+    doubt = min(DOUBTFUL_DEVIATIONS**2 * variance / max(k1**2, 1e-12), 1.0)
+    unit = np.zeros((len(fit.solution), 1))
+    unit[8] = 1.0
+    # How the other unknowns follow k1, which the edges leave free to move with it.
+    along = np.asarray(cv2.solve(fit.normal, unit, flags=cv2.DECOMP_CHOLESKY)[1])[:, 0]
+    change = -doubt * k1 * along / along[8]
+    residual = np.asarray(fit.residual - fit.rows @ change, np.float64)
+    return replace(fit, solution=fit.solution + change, residual=residual)
+
+
 def _phase_covariance(inverse: Array, starts: Indices, weighted: Array, pixels: Array) -> Array:
-    """Covariance of the errors that come from the phase of a line on the pixel grid, (6, 6).
+    """Covariance of the errors that come from the phase of a line on the pixel grid, (K, K).
 
     The points of a line along the rows or columns of pixels are off together by a few hundredths of
     a pixel, which residuals do not show; along a slanted line that averages out.
@@ -184,5 +205,5 @@ def _phase_covariance(inverse: Array, starts: Indices, weighted: Array, pixels: 
     sums = np.add.reduceat(columns, starts)
     sizes = np.diff(starts, append=len(pixels))
     alike = np.hypot(sums[:, :2], sums[:, 2:4]).max(axis=1) / sizes
-    scores = (alike[:, None] * sums[:, 4:]) @ inverse[:, :6] * PIXEL_PHASE_ERROR_PX
+    scores = (alike[:, None] * sums[:, 4:]) @ inverse * PIXEL_PHASE_ERROR_PX
     return np.asarray(scores.T @ scores, np.float64)

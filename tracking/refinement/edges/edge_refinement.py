@@ -24,6 +24,7 @@ from cubeling.tracking.refinement.edges.edge_fit import (
     FittedEdges,
     covariance,
     fit_edges,
+    without_doubtful_k1,
 )
 from cubeling.tracking.refinement.edges.profiles import (
     EdgeMeasurements,
@@ -155,11 +156,15 @@ class EdgeRefiner:
         inner = ~model.outline[numbers]
         face, lines = model.face[numbers], model.line[numbers[kept]]
         count = len(self._faces.names)
+        strong = step.strong
+        spread = covariance(step, model.line[numbers[strong]], profiles.pixels[strong])
+        if profiles.bends is not None:
+            step = without_doubtful_k1(step, profiles.k1, float(spread[8, 8]))
         wanted = np.bincount(face, minlength=count)
         found = np.bincount(face[kept], minlength=count)
         return EdgeRefinement(
             se3.apply_delta(start, step.solution[:6]),
-            covariance(step, model.line[numbers[step.strong]], profiles.pixels[step.strong]),
+            spread[:6, :6],
             float(np.sqrt((step.robust * step.residual**2).sum() / step.robust.sum())),
             len(kept) / len(numbers),
             len(run_starts(lines)),

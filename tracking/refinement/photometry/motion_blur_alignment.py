@@ -70,9 +70,9 @@ class MotionBlurAligner:
         self._faces = FacePlanes(cube)
         self._projection = projection
         self._cell = cell_size(cube)
-        self._half = cube.paper / 2
+        self._half = cube.white / 2
         self._frames = np.stack([face_frame(face) for face in cube.faces])
-        side = round(cube.paper / self._cell * TEXELS_PER_CELL)
+        side = round(cube.white / self._cell * TEXELS_PER_CELL)
         self._side = side
         self._textures = FaceTextures(cube, side)
         self._grids = {
@@ -234,7 +234,7 @@ class FaceTextures:
     """Textures of all faces of a cube, `side` texels wide, from black 0 to white 1."""
 
     def __init__(self, cube: CubeModel, side: int) -> None:
-        self._texel = cube.paper / side
+        self._texel = cube.white / side
         self._side = side
         textures = np.stack([_texture(cube, face, side) for face in range(len(cube.faces))])
         self._spectra = np.fft.rfft2(textures).astype(np.complex64)
@@ -266,5 +266,5 @@ def _texture(cube: CubeModel, face: int, side: int) -> Floats:
     """Draw a face, 1 white and 0 black, (side, side)."""
     fine = 4
     cells = marker_cells(cube.dictionary, cube.faces[face].marker_id)
-    white = 1 - black_texels(cube, cells, side * fine).astype(np.float32)
+    white = 1 - black_texels(cube, cells, side * fine, cube.white).astype(np.float32)
     return np.asarray(cv2.resize(white, (side, side), interpolation=cv2.INTER_AREA), np.float32)

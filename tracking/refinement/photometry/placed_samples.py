@@ -88,7 +88,7 @@ class SamplePlacer:
         """The faces, whose indices are those of `PlacedSamples.facing`."""
         self.texel = texel
         """Size of a texel [m]."""
-        paper = PAPER_SHARE * (cube.paper - cube.marker_size) / 2
+        paper = PAPER_SHARE * (cube.white - cube.marker_size) / 2
         self.reach = cube.marker_size / 2 + min(MARGIN_CELLS * TEXELS_PER_CELL * texel, paper)
         """How far from the middle of a face there are samples [m]."""
         self._projection = projection

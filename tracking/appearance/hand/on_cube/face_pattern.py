@@ -109,7 +109,8 @@ def _print(cube: CubeModel, face: Face, number: int) -> Image:
     """Draw the print of a face, marker upright, (FACE_TEXELS, FACE_TEXELS, 3)."""
     sheet = np.zeros((FACE_TEXELS, FACE_TEXELS, 3), np.uint8)
     sheet[..., NUMBER] = number
-    fine = black_texels(cube, marker_cells(cube.dictionary, face.marker_id), 8 * FACE_TEXELS)
+    cells = marker_cells(cube.dictionary, face.marker_id)
+    fine = black_texels(cube, cells, 8 * FACE_TEXELS, cube.paper)
     shares = cv2.resize(fine.astype(np.float32), (FACE_TEXELS,) * 2, interpolation=cv2.INTER_AREA)
     sheet[..., INK] = np.rint(255 * shares)
     margin = (cube.paper - cube.marker_size) / 2 / cube.paper * FACE_TEXELS
