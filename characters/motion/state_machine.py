@@ -47,12 +47,14 @@ class _Switch:
         return self.state == state or (self.below is not None and self.below.plays(state))
 
 
-@dataclass(frozen=True)
 class _States(Mapping[str, Motion]):
-    """Motions by name, of which the others are not asked for before they are needed."""
+    """Motions by name, of which the others are not asked for before they are needed.
 
-    first: Mapping[str, Motion]
-    others: Mapping[str, Motion]
+    Motions may change from frame to frame: no frozen dataclass, which checkpoints share.
+    """
+
+    def __init__(self, first: Mapping[str, Motion], others: Mapping[str, Motion]) -> None:
+        self.first, self.others = dict(first), others
 
     def __getitem__(self, name: str) -> Motion:
         return self.first[name] if name in self.first else self.others[name]
@@ -99,7 +101,7 @@ class StateMachine:
         length: float = 0.25,
         others: Mapping[str, Motion] | None = None,
     ) -> None:
-        self.states: Mapping[str, Motion] = _States(dict(states), others or {})
+        self.states: Mapping[str, Motion] = _States(states, others or {})
         self.length = length
         """Length of a transition [s]."""
         self._check(initial)

@@ -93,18 +93,18 @@ def clips_of_actions(
 class Actions(Mapping[str, ActionMotion]):
     """The actions of a character by name; see `clips_of_actions`.
 
-    One is made when it is first played: clips that are lent are retargeted when they are asked for.
+    One is made when it is first played.
     """
 
     def __init__(self, character: Character, besides: Iterable[str] = ()) -> None:
-        self._clips = character.clips
+        self._character = character  # its clips may be lent, and are made when they are asked for
         self._names = clips_of_actions(character.clips, besides)
         self._made: dict[str, ActionMotion] = {}
 
     def __getitem__(self, action: str) -> ActionMotion:
         if action not in self._made:
             names = self._names[action]
-            clips = [self._clips[name] for name in names.values()]
+            clips = [self._character.clips[name] for name in names.values()]
             space = BlendSpace1D(tuple(names), tuple(PhasedMotion(clip) for clip in clips))
             once = not any(clip.loop for clip in clips)
             self._made[action] = ActionMotion(action, space, once)
