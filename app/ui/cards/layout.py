@@ -30,6 +30,10 @@ of 16:9, the action's card has room beside it."""
 SMOOTHING_S, MIN_STAY_S = 0.5, 2.0
 """Time constant of how much of a card hides something, and how long it stays in a corner."""
 
+LASTING_S, LASTING = 0.7, 0.3
+"""Time constant of whether a card hides anything at all, and what that counts beside how much: even
+the edge of a character that stays is not hidden for long."""
+
 SLIDING_S = 0.4
 """Time in which a card slides to another corner."""
 
@@ -103,6 +107,9 @@ class _Placed:
     hidden: NDArray[np.float64] = field(default_factory=lambda: np.zeros(len(CORNERS)))
     """Share of the card that would hide something in each corner, smoothed."""
 
+    lasting: NDArray[np.float64] = field(default_factory=lambda: np.zeros(len(CORNERS)))
+    """Share of the last time in which it would have hidden anything there."""
+
 
 class CardLayout:
     """Chooses corners for the cards of one sequence of pictures.
@@ -146,7 +153,10 @@ class CardLayout:
         must stay visible; all in units of the canvas.
         """
         elapsed = 0.0 if self._now is None else max(now - self._now, 0.0)
-        fresh = 1.0 if self._now is None else 1 - np.exp(-elapsed / SMOOTHING_S)
+        fresh, lasting = (
+            1.0 if self._now is None else 1 - np.exp(-elapsed / constant)
+            for constant in (SMOOTHING_S, LASTING_S)
+        )
         self._now = now
         placed: list[Rect] = []
         for home, size in cards.items():
@@ -155,6 +165,7 @@ class CardLayout:
             boxes = {corner: self.box(corner, size, picture_width) for corner in CORNERS}
             hidden = [_hidden_share(box, subjects) for box in boxes.values()]
             card.hidden += fresh * (np.array(hidden) - card.hidden)
+            card.lasting += lasting * (np.sign(hidden) - card.lasting)
             others = [
                 self.box(each.corner, each.size, picture_width)
                 for each in self._cards.values()
@@ -179,9 +190,12 @@ def _move(
     """
     costs = {
         corner: hidden
+        + LASTING * lasting
         - STAY_ADVANTAGE * (corner == card.corner)
         - FREE_ADVANTAGE * are_apart(boxes[corner], others)
-        for corner, hidden in zip(CORNERS, card.hidden.tolist(), strict=True)
+        for corner, hidden, lasting in zip(
+            CORNERS, card.hidden.tolist(), card.lasting.tolist(), strict=True
+        )
         if are_apart(boxes[corner], placed)
     }
     best = min(costs, key=lambda corner: costs[corner], default=card.corner)
