@@ -5,8 +5,8 @@ elements, more marks, constraints that can be met and that cannot. They are perf
 one line. For the exponent of the CPU time (1 is linear) the limits are raised, as below them hardly
 anything takes long enough to be measured.
 
-Exits with 1 if a cost grows faster than `MAX_EXPONENT`, one document within the limits takes longer
-than `MAX_S` or needs more than `MAX_MB`, or a refusal is longer than a line.
+Exits with 1 if a cost grows faster than `MAX_EXPONENT` and `MAX_DEARER`, one document within the
+limits takes longer than `MAX_S` or needs more than `MAX_MB`, or a refusal is longer than a line.
 """
 
 import argparse
@@ -41,6 +41,10 @@ from tests.characters.behaviour.bml.estimates import Estimates
 
 MAX_EXPONENT = 1.35
 """Greatest exponent that counts as linear: fixed costs and caches bend the line a little."""
+
+MAX_DEARER = 2.0
+"""How many times as much an element of the largest document may cost as one of the smallest: those
+of a large one are no longer in the processor's cache."""
 
 MAX_S = 1.0
 """Most CPU time of one document, of any size [s]."""
@@ -176,13 +180,30 @@ def costs_of(
     return costs
 
 
-def exponent_of(costs: Sequence[Cost]) -> float:
-    """Return the exponent of the cost of documents that are performed; nan if too cheap to tell."""
+@dataclass(frozen=True)
+class Growth:
+    """How the cost of documents grows."""
+
+    exponent: float
+    """Of the CPU time over the size; nan if it is too short to tell."""
+
+    span: float
+    """The largest size that was fitted, in the smallest."""
+
+    @property
+    def is_superlinear(self) -> bool:
+        """Whether it is more than what fixed costs and caches do."""
+        return self.exponent > MAX_EXPONENT and self.span ** (self.exponent - 1.0) > MAX_DEARER
+
+
+def growth_of(costs: Sequence[Cost]) -> Growth:
+    """Return how the cost of documents grows that are performed."""
     fitted = [cost for cost in costs if not cost.refusal and cost.seconds > MIN_FITTED_S]
     if len(fitted) < 3:
-        return math.nan
+        return Growth(math.nan, 1.0)
     sizes, seconds = [cost.size for cost in fitted], [cost.seconds for cost in fitted]
-    return float(np.polyfit(np.log(sizes), np.log(seconds), 1)[0])
+    exponent = float(np.polyfit(np.log(sizes), np.log(seconds), 1)[0])
+    return Growth(exponent, max(sizes) / min(sizes))
 
 
 def peak_mb(growing: Growing, read: Callable[[str], str], costs: Sequence[Cost]) -> float:
@@ -196,10 +217,10 @@ def peak_mb(growing: Growing, read: Callable[[str], str], costs: Sequence[Cost])
         tracemalloc.stop()
 
 
-def wrong(costs: Sequence[Cost], exponent: float, peak: float) -> str:
+def wrong(costs: Sequence[Cost], growth: Growth, peak: float) -> str:
     """Return what is wrong with a kind of documents, or ""."""
     found = []
-    if exponent > MAX_EXPONENT:
+    if growth.is_superlinear:
         found.append("superlinear")
     if max(cost.seconds for cost in costs) > MAX_S:
         found.append("slow")
@@ -237,12 +258,12 @@ def main() -> int:
         costs = costs_of(growing, read, wanted.steps)
         peak = peak_mb(growing, read, costs)
         with raised_limits(wanted.factor):
-            exponent = exponent_of(costs_of(growing, read, wanted.steps, wanted.stop))
-            if exponent > MAX_EXPONENT and wanted.steps < MOST_STEPS:
-                exponent = exponent_of(costs_of(growing, read, MOST_STEPS, wanted.stop))
-        faults.append(wrong(costs, exponent, peak))
+            growth = growth_of(costs_of(growing, read, wanted.steps, wanted.stop))
+            if growth.is_superlinear and wanted.steps < MOST_STEPS:
+                growth = growth_of(costs_of(growing, read, MOST_STEPS, wanted.stop))
+        faults.append(wrong(costs, growth, peak))
         most = max(cost.seconds for cost in costs)
-        fitted = "–" if math.isnan(exponent) else f"{exponent:.2f}"
+        fitted = "–" if math.isnan(growth.exponent) else f"{growth.exponent:.2f}"
         console.print(
             f"{name:42} {costs[-1].size:10,} {most:6.3f} {peak:4.0f} {fitted:>8}  "
             f"{costs[-1].refusal[:60]} {faults[-1].upper()}",

@@ -1,25 +1,42 @@
 """The campaign of growing documents detects what grows too fast, and what is refused at length."""
 
-import math
-
 import pytest
 
 from tests.campaigns.growing_documents import Growing, everything
-from tests.campaigns.growth import Cost, costs_of, exponent_of, perform, raised_limits, wrong
+from tests.campaigns.growth import (
+    Cost,
+    Growth,
+    costs_of,
+    growth_of,
+    perform,
+    raised_limits,
+    wrong,
+)
 
 pytestmark = pytest.mark.full
 
 
-@pytest.mark.parametrize("exponent", [1.0, 2.0])
-def test_the_exponent_of_a_cost_is_found(exponent):
-    costs = [Cost(size, 1e-4 * size**exponent, "") for size in (1000, 2000, 4000, 8000)]
-    assert exponent_of(costs) == pytest.approx(exponent)
-    assert wrong(costs[:1], exponent, 0.0) == ("" if exponent == 1.0 else "superlinear, slow")
+@pytest.mark.parametrize(
+    ("exponent", "said"),
+    [(1.0, ""), (1.2, "slow"), (1.6, "superlinear, slow"), (2.0, "superlinear, slow")],
+)
+def test_how_a_cost_grows_is_found(exponent, said):
+    costs = [Cost(size, 1e-4 * size**exponent, "") for size in (2000, 4000, 8000)]
+    growth = growth_of(costs)
+    assert growth.exponent == pytest.approx(exponent)
+    assert growth.span == 4.0
+    assert wrong(costs[2:], growth, 0.0) == said
+
+
+def test_a_cache_that_is_left_over_three_sizes_is_no_growth():
+    assert not Growth(1.44, 4.0).is_superlinear
+    assert Growth(1.44, 8.0).is_superlinear
 
 
 def test_a_long_refusal_is_found():
-    assert wrong([Cost(1, 0.0, "x" * 1000)], math.nan, 0.0) == "long refusal"
-    assert wrong([Cost(1, 0.0, "two\nlines")], math.nan, 0.0) == "long refusal"
+    growth = growth_of([])
+    assert wrong([Cost(1, 0.0, "x" * 1000)], growth, 0.0) == "long refusal"
+    assert wrong([Cost(1, 0.0, "two\nlines")], growth, 0.0) == "long refusal"
 
 
 def test_limits_are_raised_for_a_while():
