@@ -12,6 +12,9 @@ MAX_VALUE_CHARS = 2000
 MAX_NAME_CHARS = 200
 """Longest name of an element or an attribute, with its namespace."""
 
+MAX_ATTRIBUTES = 100
+"""Attributes of an element; nothing that is read has more than twenty."""
+
 
 @dataclass
 class XmlElement:
@@ -107,6 +110,8 @@ class _Builder:
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         namespace, _, tag = name.rpartition("}")
+        if len(attributes) > MAX_ATTRIBUTES:
+            self._refuse(f"an element of more than {MAX_ATTRIBUTES} attributes")
         if max(map(len, (name, *attributes))) > MAX_NAME_CHARS:
             self._refuse(f"a name of more than {MAX_NAME_CHARS} characters")
         if max(map(len, attributes.values()), default=0) > MAX_VALUE_CHARS:

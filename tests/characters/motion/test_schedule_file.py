@@ -198,6 +198,10 @@ def test_a_modifier_filters_poses(human, reader) -> None:
         ),
         (document(action='</blendingaction><blendingaction id="a">'), "x:6: a second action 'a'"),
         (b"<a>" * 100, "x:1: more than 60 nested elements"),
+        (
+            b"<a " + b" ".join(b"a%d='1'" % number for number in range(101)) + b"/>",
+            "x:1: an element of more than 100 attributes",
+        ),
         (b"<blendingschedule/>", "x:1: no action is activated; add <activate>"),
         (b"<schedule/>", "x:1: <schedule> is not a <blendingschedule>"),
         (b"", "x:1: not XML (no element found)"),
