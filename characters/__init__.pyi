@@ -51,6 +51,7 @@ from cubeling.characters.locomotion.footfalls import Footfall as Footfall, Footf
 from cubeling.characters.locomotion.gaits import IDLE_SPEED as IDLE_SPEED, RUN_SPEED as RUN_SPEED
 from cubeling.characters.locomotion.obstacles import Obstacle as Obstacle, View as View
 from cubeling.characters.locomotion.paths import ClosedPath as ClosedPath
+from cubeling.characters.locomotion.places import past_circle as past_circle
 from cubeling.characters.model.character import Character as Character
 from cubeling.characters.model.mesh import Material as Material, Mesh as Mesh, Morph as Morph
 from cubeling.characters.model.mirroring import mirror_of as mirror_of

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.props import PosedBody
+from cubeling.characters import past_circle
 from cubeling.characters.motion import ARRIVAL_DISTANCE_M
 
 Point = NDArray[np.float64]
@@ -15,9 +16,6 @@ AVOIDED_M = 0.075
 
 INSIDE_EDGES = 0.7
 """A body this near to the middle of the cube is in it, in edges of the cube: just at a corner."""
-
-DETOUR_M = 0.15
-"""How far ahead it aims while it does so [m]; further than where a walker stops."""
 
 LOOK_M, LOOK_HEIGHTS_M = 0.4, (0.05, 0.22)
 """How far away the points are that it looks at while it looks about, and how high [m]."""
@@ -61,19 +59,7 @@ def around(here: Point, target: Point, cube: Point) -> Point:
     >>> bool(around(np.array([-0.3, 0, 0]), np.array([0.3, 0.1]), np.zeros(3))[1] > 0.03)
     True
     """
-    way, offset = target - here[[0, 2]], cube[[0, 2]] - here[[0, 2]]
-    length, distance = float(np.linalg.norm(way)), float(np.linalg.norm(offset))
-    if min(length, distance) < 1e-6:
-        return target
-    along = float(offset @ way) / length
-    aside = float(offset[0] * way[1] - offset[1] * way[0]) / length
-    if not 0.0 < along < length or abs(aside) >= AVOIDED_M:
-        return target
-    # Along the tangent of the circle that it does not enter, on the side of the target.
-    angle = math.copysign(math.asin(min(AVOIDED_M / distance, 1.0)), aside)
-    sine, cosine = math.sin(angle), math.cos(angle)
-    ahead = np.array([[cosine, -sine], [sine, cosine]]) @ offset / distance
-    return np.asarray(here[[0, 2]] + DETOUR_M * ahead)
+    return past_circle(here[[0, 2]], target, cube[[0, 2]], AVOIDED_M)
 
 
 def out_of(here: Point, cube: Point, edge: float) -> Point | None:

@@ -35,7 +35,7 @@ FEW_POINTS = 60
 """By how many points of a body it is told how much of it is hidden."""
 
 DETOUR_M = 0.15
-"""How far ahead it aims while it walks round an obstacle [m]; further than where a walker stops."""
+"""How far ahead it aims while it walks round something [m]; further than where a walker stops."""
 
 BODY_M, WIDE_M = 0.033, 0.1
 """Half the width of a body [m]; an obstacle whose corners are further from its middle than the
@@ -180,19 +180,29 @@ def detour(here: Array, target: Array, obstacle: Obstacle, tall: float) -> Array
     corners = obstacle.corners
     centre = obstacle.table_from_box[[0, 2], 3]
     radius = float(np.linalg.norm(corners[:, [0, 2]] - centre, axis=1).max())
-    way, offset = target - here, centre - here
-    length, distance = float(np.linalg.norm(way)), float(np.linalg.norm(offset))
-    if radius > WIDE_M or corners[:, 1].min() > tall or min(length, distance) < 1e-6:
+    if radius > WIDE_M or corners[:, 1].min() > tall:
         return target
     avoided = radius + BODY_M
     if float(np.linalg.norm(target - centre)) < avoided:  # it goes to the obstacle itself
         return target
+    return past_circle(here, target, centre, avoided)
+
+
+def past_circle(here: Array, target: Array, centre: Array, radius: float) -> Array:
+    """Return a target (x, z), or a point to pass first if a circle is on the way to it.
+
+    All places are (x, z) on the table [m].
+    """
+    way, offset = target - here, centre - here
+    length, distance = float(np.linalg.norm(way)), float(np.linalg.norm(offset))
+    if min(length, distance) < 1e-6:
+        return target
     along = float(offset @ way) / length
     aside = float(offset[0] * way[1] - offset[1] * way[0]) / length
-    if not 0.0 < along < length or abs(aside) >= avoided:
+    if not 0.0 < along < length or abs(aside) >= radius:
         return target
     # Along the tangent of the circle that it does not enter, on the side of the target.
-    angle = math.copysign(math.asin(min(avoided / distance, 1.0)), aside)
+    angle = math.copysign(math.asin(min(radius / distance, 1.0)), aside)
     sine, cosine = math.sin(angle), math.cos(angle)
     ahead = np.array([[cosine, -sine], [sine, cosine]]) @ offset / distance
     return np.asarray(here + DETOUR_M * ahead)

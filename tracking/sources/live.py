@@ -103,12 +103,12 @@ class LiveSource(FrameSource):
 
     @property
     def waiting(self) -> int:
-        """See `base.BufferedFrames`."""
+        """How many frames are kept now: with any, the last one is not the newest."""
         return self._capture.waiting
 
     @property
     def max_waiting(self) -> int:
-        """See `base.BufferedFrames`."""
+        """How many frames are kept until they are waited for; of more, the oldest are dropped."""
         return self._capture.max_waiting
 
     @max_waiting.setter

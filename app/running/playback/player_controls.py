@@ -89,7 +89,7 @@ class PlayerControls:
         else:
             seconds = session.recording.seconds
             session.end_recording()
-            # Until now the pixels were those of the recording, which has coded them anew.
+            # Until now the pixels were those of the recording, which were encoded once more.
             self._transport.save_state(acted=True)
             played = f"cubeling replay {short_path(session.recorded[-1])}"
             session.screen.notify(f"Recorded {seconds:.0f} s. Play it: {played}")
