@@ -71,7 +71,8 @@ class Recorder(Closeable):
 
     Open it before the first frame, `write` every step, and `close` it at the end; a second `close`
     does nothing. A chunk ends every `CHUNK_S`, and the disk is told to keep it (`fsync`): if the
-    program is killed, all but the last second can be read.
+    program is killed, all but the last second can be read. A second thread waits for the disk, as
+    the next chunk would end late otherwise, and a kill would lose what waits for it.
 
     Parameters
     ----------
@@ -103,8 +104,13 @@ class Recorder(Closeable):
             self._start()  # here, so that there is no moment at which the file is no session
         except OSError as error:
             raise AppError(f"cannot record to '{path}': {error.strerror}") from error
-        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
-        self._thread.start()
+        self._unsynced, self._ended = threading.Event(), False
+        self._threads = [
+            threading.Thread(target=run, name=name, daemon=True)
+            for name, run in (("recorder", self._run), ("recorder's disk", self._sync_chunks))
+        ]
+        for thread in self._threads:
+            thread.start()
         self._closed = False
 
     def camera(self, intrinsics: Intrinsics, timestamp: float) -> None:
@@ -157,8 +163,8 @@ class Recorder(Closeable):
     def flush(self) -> None:
         """Wait until everything is written."""
         done = threading.Event()
-        self._submit(self._end_chunk)
-        self._submit(done.set)
+        for work in (self._end_chunk, self._sync, done.set):
+            self._submit(work)
         while self.problem is None and not done.wait(0.1):
             pass
 
@@ -168,7 +174,8 @@ class Recorder(Closeable):
             return
         self._closed = True
         self._submit(None)
-        self._thread.join(timeout=10.0)
+        for thread in self._threads:
+            thread.join(timeout=10.0)
         with suppress(OSError):  # a full disk, which `problem` tells
             self._file.close()
         if self._steps == 0:
@@ -195,22 +202,37 @@ class Recorder(Closeable):
                     self._end_chunk()
                     chunk_end = None
             self._writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
+            self._file.flush()
             self._sync()
         except (OSError, ValueError) as error:
-            reason = (error.strerror if isinstance(error, OSError) else None) or error
-            self.problem = f"recording to '{self.path}' stopped: {reason}"
+            self._stop(error)
+        finally:
+            self._ended = True
+            self._unsynced.set()
 
     def _end_chunk(self) -> None:
         """Write the chunk in progress, and have it kept whatever happens to the program."""
         self._writer.flush()  # type: ignore[no-untyped-call]  # mcap has no types here
-        self._sync()
+        self._file.flush()
+        self._unsynced.set()
+
+    def _sync_chunks(self) -> None:
+        while self._unsynced.wait() and not self._ended:
+            self._unsynced.clear()  # before the sync: a chunk that ends during it needs another
+            try:
+                self._sync()
+            except (OSError, ValueError) as error:
+                self._stop(error)
 
     def _sync(self) -> None:
-        self._file.flush()
         os.fsync(self._file.fileno())
 
+    def _stop(self, error: OSError | ValueError) -> None:
+        reason = (error.strerror if isinstance(error, OSError) else None) or error
+        self.problem = f"recording to '{self.path}' stopped: {reason}"
+
     def _submit(self, write: Callable[[], None] | None) -> None:
-        if self.problem is not None:
+        if self.problem is not None and write is not None:
             return
         try:
             self._queue.put(write, timeout=5.0 if write is None else 0.0)

@@ -1,5 +1,6 @@
 """Sessions on disk: exact, append-only, and readable after damage."""
 
+import errno
 import os
 import threading
 from functools import cache
@@ -237,6 +238,45 @@ def test_a_chunk_ends_in_time_although_nothing_more_comes(
         recorder_steps(recorder, 10)
         while len(messages_of(path.read_bytes(), tmp_path)) < 10:
             assert synced.acquire(timeout=WAIT_S)
+
+
+def test_a_chunk_ends_in_time_although_the_disk_is_slow(tmp_path, recorder_steps, monkeypatch):
+    """What is written by `flush` survives a kill, even if it has not reached the disk."""
+    monkeypatch.setattr("cubeling.app.session.recorder.CHUNK_S", 0.0)
+    disk_is_back, first_sync = threading.Event(), threading.Event()
+
+    def hanging(file):
+        first_sync.set()
+        assert disk_is_back.wait(WAIT_S)
+
+    path = tmp_path / "killed.mcap"
+    with Recorder(path, {"scenario": "follow"}) as recorder:
+        ended = threading.Semaphore(0)
+        end_chunk = recorder._end_chunk
+
+        def noting():
+            end_chunk()
+            ended.release()
+
+        monkeypatch.setattr(recorder, "_end_chunk", noting)
+        monkeypatch.setattr(os, "fsync", hanging)
+        recorder_steps(recorder, 10)
+        while len(messages_of(path.read_bytes(), tmp_path)) < 10:
+            assert ended.acquire(timeout=WAIT_S)
+        assert first_sync.is_set()
+        disk_is_back.set()
+
+
+def test_a_disk_that_fails_ends_the_recording(tmp_path, recorder_steps, monkeypatch):
+    def failing(file):
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(os, "fsync", failing)
+    path = tmp_path / "failing.mcap"
+    with Recorder(path, {"scenario": "follow"}) as recorder:
+        recorder_steps(recorder, 3)
+        recorder.flush()
+        assert recorder.problem == f"recording to '{path}' stopped: Input/output error"
 
 
 def test_a_session_that_was_killed_before_its_first_picture_says_what_it_was(tmp_path):
