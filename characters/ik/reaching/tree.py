@@ -19,7 +19,7 @@ import numpy as np
 from cubeling.characters.ik.reaching.arms import Arm, cone_axis, scale_vector
 from cubeling.characters.ik.reaching.torso import PlacedTorso
 from cubeling.characters.skeleton.scalar_quaternions import (
-    Quaternion,
+    IDENTITY,
     Vector,
     add,
     conjugate,
@@ -63,11 +63,19 @@ LIMIT_SPRING = 14.0
 ELBOW_SPRING, EASY_FLEXION_RAD = 1.0, math.radians(61.0)
 """How stiff an elbow is that is bent less than it is at ease [rad]."""
 
-KNEE_SPRING, LEG_SPRING, TAUT_LEG = 1.2, 4.0, 150.0
-"""How stiff a knee is, a leg that shortens, and one that is longer than it can be."""
+KNEE_SPRING, LEG_SPRING = 1.2, 4.0
+"""How stiff a knee is, and a leg whose length changes."""
 
-BALANCE_SPRING = 12.0
-"""How stiff the middle of mass holds its place over the feet [1/body height]."""
+LONGEST_LEG, SHORTEST_LEG = 0.99, 0.4
+"""Extension of a leg that is straight, unless the pose has it straighter, and of one that is folded
+up, ÷ its length."""
+
+BALANCE_SPRING, FALLING_SPRING = 12.0, 40.0
+"""How stiff the middle of mass holds its place over the feet, and beyond them [1/body height]."""
+
+FOOT_HALF_WIDTH, FOOT_AHEAD, FOOT_BEHIND = 0.02, 0.07, 0.04
+"""How far it moves to the side of an outer ankle, ahead and back before it is beyond the feet
+[body heights]."""
 
 CONE_SPRING, CONE_RAD = 3.0, math.radians(85.0)
 """How stiff a shoulder joint is beyond an angle from the middle of what its hand reaches."""
@@ -191,209 +199,214 @@ def settle(
         How many steps to make.
     """
     energy = _Energy(tree, pulls, power, gaze)
-    state = [0.0] * energy.size if start is None else energy.state_of(start)
+    state = [0.0] * len(energy.springs) if start is None else energy.state_of(start)
     for _ in range(steps):
         state = energy.step(state)
     return energy.settled(state)
 
 
+Row = list[float]
+"""How a miss changes with the state: shift, pelvis, spine and collarbones."""
+
+
 class _Energy:
-    """The energy of a tree: springs of joints are on the diagonal, targets are rows."""
+    """The energy of a tree: springs of joints are on the diagonal, targets are rows.
+
+    All is in the frame of the pelvis in the pose, as the springs of pelvis and spine have its axes.
+    """
 
     def __init__(
         self, tree: PlacedTree, pulls: Mapping[str, Pull], power: float, gaze: Vector | None
     ) -> None:
-        self.tree, self.gaze = tree, gaze
-        self.sides, self.pulls = list(pulls), list(pulls.values())
-        self.size = 9 + 3 * len(pulls)
-        self.power = power
-        torso = tree.torso
-        self.back = conjugate(torso.facing)
-        count = max(len(torso.places), 1)
-        sums = [sum(axis) / count for axis in zip(*torso.places, strict=True)]
-        self.waist: Vector = (sums[0], sums[1], sums[2]) if sums else torso.top
-        held = to_rotation_vector(multiply(self.back, torso.chest))
-        spine = SPINE_SPRING if torso.places else (1e6, 1e6, 1e6)
-        free = bool(tree.legs)
-        shift = [each / tree.height if free else 1e6 for each in SHIFT_SPRING]
-        pelvis = PELVIS_SPRING if free else (1e6, 1e6, 1e6)
-        self.springs = [*shift, *pelvis, *spine, *([COLLAR_SPRING] * 3 * len(pulls))]
-        ranges = [(-math.inf, math.inf)] * 3
-        ranges += [(math.radians(low), math.radians(high)) for low, high in PELVIS_RANGE_DEG]
-        ranges += [
-            (min(math.radians(low), own), max(math.radians(high), own))
-            for (low, high), own in zip(SPINE_RANGE_DEG, held, strict=True)
+        torso, back = tree.torso, conjugate(tree.torso.facing)
+        self.facing, self.height, self.power = torso.facing, tree.height, power
+        places = [rotate(back, place) for place in torso.places]
+        chest = multiply(back, torso.chest)
+        top, self.centre = rotate(back, torso.top), rotate(back, tree.centre)
+        self.torso = PlacedTorso(places, IDENTITY, chest, top, torso.limits)
+        count = 1.0 / len(places)
+        x, y, z = (sum(axis) for axis in zip(*places, strict=True))
+        self.waist: Vector = (count * x, count * y, count * z)
+        self.legs = [
+            Strut(rotate(back, leg.hip), rotate(back, leg.ankle), leg.length) for leg in tree.legs
         ]
-        ranges += [(-COLLAR_RANGE_RAD, COLLAR_RANGE_RAD)] * 3 * len(pulls)
-        self.ranges, self.held = ranges, [0.0] * 6 + list(held) + [0.0] * 3 * len(pulls)
-        self.identity = np.arange(self.size)
+        self.own = [length(subtract(leg.ankle, leg.hip)) / leg.length for leg in self.legs]
+        apart = 0.5 * length(subtract(tree.legs[0].ankle, tree.legs[1].ankle)) if tree.legs else 0.0
+        side = apart + FOOT_HALF_WIDTH * tree.height
+        self.support = (
+            (-side, side),
+            (-FOOT_BEHIND * tree.height, FOOT_AHEAD * tree.height),
+        )
+        self.eyes = rotate(back, tree.eyes)
+        self.gaze = None if gaze is None else rotate(back, gaze)
+        self.up: Vector = rotate(back, (0.0, 1.0, 0.0))
+        self.sides = list(pulls)
+        self.pulls = [
+            pull._replace(
+                base=rotate(back, pull.base),
+                shoulder=rotate(back, pull.shoulder),
+                place=rotate(back, pull.place),
+            )
+            for pull in pulls.values()
+        ]
+        stands = [*(each / tree.height for each in SHIFT_SPRING), *PELVIS_SPRING]
+        self.springs = [*(stands if self.legs else _FIXED), *SPINE_SPRING]
+        self.springs += [COLLAR_SPRING] * 3 * len(pulls)
+        held = to_rotation_vector(chest)
+        self.ranges = [*_PELVIS_RANGES]
+        for (low, high), own in zip(_SPINE_RANGES, held, strict=True):
+            self.ranges.append((min(low - own, 0.0), max(high - own, 0.0)))
+        self.ranges += [(-COLLAR_RANGE_RAD, COLLAR_RANGE_RAD)] * 3 * len(pulls)
+        self.diagonal = np.arange(len(self.springs))
+        self.rows: list[Row] = []
+        self.misses: list[float] = []
 
     def state_of(self, start: Settled) -> list[float]:
-        parts = [start.shift, start.pelvis, start.spine]
-        state = [value for part in parts for value in rotate(self.back, part)]
-        return state + [value for side in self.sides for value in start.collar(side)]
+        """Return a state as the numbers that are solved for."""
+        back = conjugate(self.facing)
+        state = [value for part in start[:3] for value in rotate(back, part)]
+        return state + [v for side in self.sides for v in rotate(back, start.collar(side))]
 
     def settled(self, state: Sequence[float]) -> Settled:
-        facing = self.tree.torso.facing
-        shift, pelvis, spine = (
-            rotate(facing, (state[at], state[at + 1], state[at + 2])) for at in (0, 3, 6)
-        )
-        collars = {
-            side: (state[at], state[at + 1], state[at + 2])
-            for side, at in zip(self.sides, range(9, self.size, 3), strict=True)
-        }
-        return Settled(shift, pelvis, spine, **collars)
+        """Return the numbers that are solved for as a state."""
+        parts = [
+            rotate(self.facing, (state[at], state[at + 1], state[at + 2]))
+            for at in range(0, len(state), 3)
+        ]
+        return Settled(*parts[:3], **dict(zip(self.sides, parts[3:], strict=True)))
 
     def step(self, state: list[float]) -> list[float]:
         """Return the state after one Gauss-Newton step."""
-        diagonal, slope = [], []
-        for value, spring, (low, high), own in zip(
-            state, self.springs, self.ranges, self.held, strict=True
-        ):
+        stiff, slope = [], []
+        for value, spring, (low, high) in zip(state, self.springs, self.ranges, strict=True):
             square = spring * spring
+            over = value - high if value > high else value - low if value < low else 0.0
             pull = square * value
-            total = value + own
-            over = total - high if total > high else total - low if total < low else 0.0
             if over:
                 square += LIMIT_SPRING * LIMIT_SPRING
                 pull += LIMIT_SPRING * LIMIT_SPRING * over
-            diagonal.append(square)
+            stiff.append(square)
             slope.append(pull)
-        rows, misses = self._rows(self.settled(state), diagonal)
-        jacobian = np.array(rows).reshape(-1, self.size)
+        self.rows, self.misses = [], []
+        self._add_targets(state, stiff)
+        jacobian = np.array(self.rows).reshape(-1, len(state))
         matrix = jacobian.T @ jacobian
-        matrix[self.identity, self.identity] += diagonal
-        change = np.linalg.solve(matrix, -(jacobian.T @ np.array(misses)) - np.array(slope))
-        turned = max(float(np.abs(change[3:]).max()) / MAX_STEP_RAD, 1.0)
-        shifted = float(np.abs(change[:3]).max()) / (MAX_STEP_HEIGHTS * self.tree.height)
-        change /= max(turned, shifted)
-        return [value + more for value, more in zip(state, change.tolist(), strict=True)]
+        matrix[self.diagonal, self.diagonal] += stiff
+        change = np.linalg.solve(matrix, np.array(self.misses) @ jacobian + slope).tolist()
+        shifted = max(map(abs, change[:3])) / (MAX_STEP_HEIGHTS * self.height)
+        size = 1.0 / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
+        return self._planted(
+            [value - size * more for value, more in zip(state, change, strict=True)]
+        )
 
-    def _rows(self, settled: Settled, stiff: list[float]) -> tuple[list[list[float]], list[float]]:
-        """Return the rows of the targets, and how far each is from rest.
+    def _planted(self, state: list[float]) -> list[float]:
+        """Return a state whose pelvis is as low as its legs need it, and no lower than they fold.
 
-        To `stiff`, the diagonal, what a pull adds to it is added.
+        A spring for that would be so stiff that steps went past it to and fro.
         """
-        tree, torso = self.tree, self.tree.torso
-        rows: list[list[float]] = []
-        misses: list[float] = []
-        whole = from_rotation_vector(settled.pelvis)
-        step, bent = torso.step(settled.spine), from_rotation_vector(settled.spine)
+        if not self.legs:
+            return state
+        whole = from_rotation_vector((state[3], state[4], state[5]))
+        highest, lowest = math.inf, -math.inf
+        for leg, own in zip(self.legs, self.own, strict=True):
+            hip = add(self.centre, rotate(whole, subtract(leg.hip, self.centre)))
+            x, y, z = subtract(hip, leg.ankle)
+            x, z = x + state[0], z + state[2]
+            longest = max(own, LONGEST_LEG) * leg.length
+            highest = min(highest, math.sqrt(max(longest * longest - x * x - z * z, 0.0)) - y)
+            lowest = max(lowest, SHORTEST_LEG * leg.length - y)
+        state[1] = min(max(state[1], min(lowest, 0.0)), highest)
+        return state
+
+    def _add_targets(self, state: Sequence[float], stiff: list[float]) -> None:
+        """Add the rows of all targets; to `stiff`, the diagonal, what pulls add to it."""
+        torso, (sx, sy, sz, px, py, pz, bx, by, bz, *collars) = self.torso, state
+        whole, bent = from_rotation_vector((px, py, pz)), from_rotation_vector((bx, by, bz))
+        step = torso.step((bx, by, bz))
         carried = multiply(whole, bent)
-        chest = multiply(carried, torso.chest) if torso.places else multiply(whole, torso.chest)
-        centre = add(tree.centre, settled.shift)
-        waist = self._moved(self.waist, whole, centre)
+        chest, uncarried = multiply(carried, torso.chest), conjugate(carried)
+        old, (cx, cy, cz) = self.centre, self.centre
+        centre = (cx + sx, cy + sy, cz + sz)
+        waist = add(centre, rotate(whole, subtract(self.waist, old)))
+        none = [0.0] * len(collars)
 
-        def add_row(
-            miss: float,
-            way: Vector,
-            place: Vector,
-            share: float,
-            number: int = -1,
-            lever: Vector = (0.0, 0.0, 0.0),
-        ) -> None:
-            """Add a target that depends on where a place of the chest is."""
-            row = [share * value for value in rotate(self.back, way)]
-            row += rotate(self.back, cross(subtract(place, centre), way))
-            row += rotate(self.back, cross(subtract(place, waist), way))
-            row += [0.0] * (self.size - 9)
-            if number >= 0:
-                row[9 + 3 * number : 12 + 3 * number] = rotate(
-                    conjugate(carried), cross(lever, way)
-                )
-            rows.append(row)
-            misses.append(miss)
+        def add_place(miss: float, way: Vector, place: Vector, shift: Vector) -> Row:
+            """Add a target of a place that the chest carries; return its row."""
+            levers = (cross(subtract(place, each), way) for each in (centre, waist))
+            row = [*shift, *next(levers), *next(levers), *none]
+            self.rows.append(row)
+            self.misses.append(miss)
+            return row
 
-        def add_direction(miss: float, about: Vector) -> None:
-            """Add a target that depends on how the chest is turned."""
-            turn = rotate(self.back, about)
-            rows.append([0.0, 0.0, 0.0, *turn, *turn, *([0.0] * (self.size - 9))])
-            misses.append(miss)
+        def add_direction(size: float, axis: Vector, aim: Vector, most: float) -> None:
+            """Add a target of where the chest faces, if an aim is further away than `most`."""
+            x, y, z = cross(axis, aim)
+            sine = math.sqrt(x * x + y * y + z * z)
+            over = math.atan2(sine, dot(axis, aim)) - most
+            if over > 0.0 and sine > 1e-9:
+                turn = scale_vector((x, y, z), -size / sine)
+                self.rows.append([0.0, 0.0, 0.0, *turn, *turn, *none])
+                self.misses.append(size * over)
 
-        for number, (side, pull) in enumerate(zip(self.sides, self.pulls, strict=True)):
-            swing = from_rotation_vector(settled.collar(side))
+        for number, pull in enumerate(self.pulls):
+            at = 3 * number
+            swing = from_rotation_vector((collars[at], collars[at + 1], collars[at + 2]))
             bone = rotate(swing, subtract(pull.shoulder, pull.base))
-            shoulder = self._moved(torso.carry(step, add(pull.base, bone)), whole, centre)
+            place = torso.carry(step, add(pull.base, bone))
+            shoulder = add(centre, rotate(whole, subtract(place, old)))
             aim = subtract(pull.place, shoulder)
             far = max(length(aim), 1e-9)
-            away, slope = _straining(pull, far, self.power)
+            miss, slope = _straining(pull, far, self.power)
             if slope:
-                self._stiffen(stiff, number, aim, far, away * slope, shoulder, centre, waist, bone)
-                add_row(
-                    away,
-                    scale_vector(aim, -slope / far),
-                    shoulder,
-                    1.0,
-                    number,
-                    rotate(carried, bone),
-                )
-            axis = cone_axis(chest, pull.arm.sign)
-            over, about = _beyond(axis, aim, far, CONE_RAD)
-            if over > 0.0:
-                size = CONE_SPRING * pull.weight
-                add_direction(size * over, scale_vector(about, -size))
+                way = scale_vector(aim, -slope / far)
+                row = add_place(miss, way, shoulder, way)
+                lever = rotate(carried, bone)
+                row[9 + at : 12 + at] = rotate(uncarried, cross(lever, way))
+                _stiffen(stiff, 0, (0.0, 0.0, 0.0), aim, miss * slope / far, 1.0)
+                for first, joint in ((3, centre), (6, waist)):
+                    _stiffen(stiff, first, subtract(shoulder, joint), aim, miss * slope / far)
+                _stiffen(stiff, 9 + at, lever, aim, miss * slope / far)
+            add_direction(CONE_SPRING * pull.weight, cone_axis(chest, pull.arm.sign), aim, CONE_RAD)
         if self.gaze is not None:
-            aim = subtract(self.gaze, self._moved(torso.carry(step, tree.eyes), whole, centre))
+            eyes = add(centre, rotate(whole, subtract(torso.carry(step, self.eyes), old)))
             ahead = rotate(chest, (0.0, 0.0, 1.0))
-            over, about = _beyond(ahead, aim, max(length(aim), 1e-9), GAZE_RAD)
-            if over > 0.0:
-                add_direction(GAZE_SPRING * over, scale_vector(about, -GAZE_SPRING))
-        for leg in tree.legs:
-            hip = self._moved(leg.hip, whole, centre)
-            way = subtract(leg.ankle, hip)
-            far = max(length(way), 1e-9)
-            for miss, slope in _standing(far / leg.length, _extension(leg)):
-                toward = scale_vector(way, -slope / (far * leg.length))
-                row = [*rotate(self.back, toward)]
-                row += rotate(self.back, cross(subtract(hip, centre), toward))
-                rows.append(row + [0.0] * (self.size - 6))
-                misses.append(miss)
-        if tree.legs:
-            top = self._moved(torso.carry(step, torso.top), whole, centre)
-            leant = scale_vector(subtract(subtract(top, torso.top), settled.shift), UPPER_MIDDLE)
-            moved = add(settled.shift, scale_vector(leant, UPPER_MASS))
-            size = BALANCE_SPRING / tree.height
-            for way in ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)):
-                share = UPPER_MASS * UPPER_MIDDLE
-                row_way = scale_vector(way, size * share)
-                add_row(size * dot(moved, way), row_way, top, 1.0 / share)
-        return rows, misses
-
-    def _stiffen(
-        self,
-        stiff: list[float],
-        number: int,
-        aim: Vector,
-        far: float,
-        force: float,
-        shoulder: Vector,
-        centre: Vector,
-        waist: Vector,
-        bone: Vector,
-    ) -> None:
-        """Add what a pull stiffens across its direction: that of a string, and of a pendulum.
-
-        Gauss-Newton leaves it out, and would swing from side to side.
-        """
-        string = force / far
-        for at in range(3):
-            stiff[at] += string
-        for first, lever in (
-            (3, subtract(shoulder, centre)),
-            (6, subtract(shoulder, waist)),
-            (9 + 3 * number, bone),
-        ):
-            more = string * (dot(lever, lever) + max(dot(aim, lever), 0.0))
-            for at in range(first, first + 3):
-                stiff[at] += more
-
-    def _moved(self, place: Vector, whole: Quaternion, centre: Vector) -> Vector:
-        """Return where the pelvis takes a place."""
-        return add(centre, rotate(whole, subtract(place, self.tree.centre)))
+            add_direction(GAZE_SPRING, ahead, subtract(self.gaze, eyes), GAZE_RAD)
+        for leg, own in zip(self.legs, self.own, strict=True):
+            hip = add(centre, rotate(whole, subtract(leg.hip, old)))
+            aim = subtract(leg.ankle, hip)
+            far = max(length(aim), 1e-9)
+            miss, slope = _standing(far / leg.length, own)
+            way = scale_vector(aim, -slope / (far * leg.length))
+            self.rows.append([*way, *cross(subtract(hip, centre), way), 0.0, 0.0, 0.0, *none])
+            self.misses.append(miss)
+        if self.legs:
+            top = add(centre, rotate(whole, subtract(torso.carry(step, torso.top), old)))
+            x, y, z = subtract(top, torso.top)
+            share = UPPER_MASS * UPPER_MIDDLE
+            moved = (sx + share * (x - sx), sy + share * (y - sy), sz + share * (z - sz))
+            ahead = cross(_LEFT, self.up)
+            for axis, (low, high) in zip((_LEFT, ahead), self.support, strict=True):
+                away, spring = dot(moved, axis), BALANCE_SPRING / self.height
+                beyond = away - high if away > high else away - low if away < low else 0.0
+                size, miss = spring, spring * away
+                if beyond:
+                    hard = FALLING_SPRING / self.height
+                    size = math.hypot(spring, hard)
+                    miss = (spring * spring * away + hard * hard * beyond) / size
+                way = scale_vector(axis, size * share)
+                add_place(miss, way, top, scale_vector(axis, size))
 
 
-def _extension(leg: Strut) -> float:
-    return length(subtract(leg.ankle, leg.hip)) / leg.length
+def _stiffen(
+    stiff: list[float], first: int, lever: Vector, aim: Vector, string: float, own: float = 0.0
+) -> None:
+    """Add what a pull stiffens across its direction: that of a string, and of a pendulum.
+
+    Gauss-Newton leaves it out, and would swing from side to side.
+    """
+    more = string * (own + dot(lever, lever) + max(dot(aim, lever), 0.0))
+    for at in range(first, first + 3):
+        stiff[at] += more
 
 
 def _straining(pull: Pull, far: float, power: float) -> tuple[float, float]:
@@ -420,23 +433,21 @@ def _span(upper: float, fore: float, flexion: float) -> float:
     return math.sqrt(upper * upper + fore * fore + 2.0 * upper * fore * math.cos(flexion))
 
 
-def _standing(extension: float, own: float) -> list[tuple[float, float]]:
-    """Return misses of the springs of a leg, and how they change with its extension."""
+def _standing(extension: float, own: float) -> tuple[float, float]:
+    """Return how far a leg is from its ease, and how that changes with its extension."""
     bend, held = (math.sqrt(max(1.0 - each, 0.0) + 0.004) for each in (extension, own))
-    shorter = extension - own
-    rows = [
-        (KNEE_SPRING * (held - bend), KNEE_SPRING / (2.0 * bend)),
-        (LEG_SPRING * shorter, LEG_SPRING),
-    ]
-    longest = max(own, 0.99)
-    if extension > longest:
-        rows.append((TAUT_LEG * (extension - longest), TAUT_LEG))
-    return rows
+    # Knee and leg are springs of one length: together they are one.
+    knee = KNEE_SPRING / (2.0 * bend)
+    square = knee * knee + LEG_SPRING * LEG_SPRING
+    force = knee * KNEE_SPRING * (held - bend) + LEG_SPRING * LEG_SPRING * (extension - own)
+    slope = math.sqrt(square)
+    return force / slope, slope
 
 
-def _beyond(axis: Vector, aim: Vector, far: float, most: float) -> tuple[float, Vector]:
-    """Return how far an aim is beyond an angle from an axis, and the axis of turning to it."""
-    about = cross(axis, aim)
-    sine = length(about)
-    over = math.atan2(sine, dot(axis, aim)) - most
-    return over, scale_vector(about, 1.0 / max(sine, 1e-9 * far))
+_LEFT: Vector = (1.0, 0.0, 0.0)
+_FIXED = (1e6,) * 6  # springs of a pelvis that has no legs to stand on
+_SPINE_RANGES = tuple((math.radians(a), math.radians(b)) for a, b in SPINE_RANGE_DEG)
+_PELVIS_RANGES = (
+    *((-math.inf, math.inf),) * 3,
+    *((math.radians(a), math.radians(b)) for a, b in PELVIS_RANGE_DEG),
+)

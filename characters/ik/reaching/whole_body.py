@@ -6,6 +6,7 @@ it to where their feet are, trunk and collarbones turn, and arms are bent as `Up
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -61,6 +62,9 @@ class WholeBody:
         for place, parent in enumerate(kinematics.parents):
             carried.append(place == self._pelvis or (parent >= 0 and carried[parent]))
         self._carried = carried
+        arms = {number[joint] for arm in upper.arms.values() for joint in arm.joints[2:]}
+        unused = arms | set(self.neck)
+        self._moves = [each and place not in unused for place, each in enumerate(carried)]
         moved = [joint for leg in stance.legs for joint in leg if carried[number[joint]]]
         self._leg_rows, self._neck_rows = np.array(moved, np.intp), np.array(stance.neck, np.intp)
 
@@ -112,11 +116,11 @@ class WholeBody:
 
         turns = [
             multiply(whole, turn) if carried else turn
-            for turn, carried in zip(frames.turns, self._carried, strict=True)
+            for turn, carried in zip(frames.turns, self._moves, strict=True)
         ]
         places = [
             moved(place) if carried else place
-            for place, carried in zip(frames.places, self._carried, strict=True)
+            for place, carried in zip(frames.places, self._moves, strict=True)
         ]
         kinematics, pelvis = self.upper.kinematics, self._pelvis
         parents, row = kinematics.parents, kinematics.stance.pelvis
@@ -184,7 +188,7 @@ class PlacedBody:
     hands: Sequence[HandOnItsWay]
     """The hands that are for something."""
 
-    @property
+    @cached_property
     def tree(self) -> PlacedTree:
         """Its tree of springs."""
         places, body = self.frames.places, self.body
