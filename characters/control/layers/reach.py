@@ -17,7 +17,7 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.reaching import HandTarget, ReachStyle, UpperBody
 from cubeling.characters.ik.reaching.arms import scale_vector
 from cubeling.characters.ik.reaching.surface import BodySurface
-from cubeling.characters.ik.reaching.tree import FIRST_STEPS, STEPS, Settled
+from cubeling.characters.ik.reaching.tree import FIRST_STEPS, STEP_S, Settled
 from cubeling.characters.ik.reaching.whole_body import PlacedBody, WholeBody
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.standing import idle_clips
@@ -279,7 +279,9 @@ class ReachLayer:
         looked, now = gaze_of(context), context.command.timestamp
         gaze = context.gaze_target if looked is None else context.in_character(looked.target)
         aim: Vector | None = None if gaze is None else tuple(gaze.tolist())
-        steps = FIRST_STEPS if join or self._settled is None else STEPS
+        steps = FIRST_STEPS
+        if self._settled is not None and not join:
+            steps = min(max(round(context.elapsed / STEP_S), 1), FIRST_STEPS)
         self._settled = placed.settle(style, aim, self._settled, steps)
         values = np.array(self._settled)
         if join and self._shown_tree is not None:

@@ -42,8 +42,10 @@ CONE_RAD = math.radians(115.0)
 CONE_AXIS: Vector = (0.45, -0.25, 0.85)
 """That middle for a left hand, in the axes of the chest: outward, down and ahead."""
 
-STRAIGHT_SHARE = 0.9995
-"""Extension of a straight arm ÷ its length: the rest keeps its elbow defined."""
+SOFT_SHARE, STRAIGHT_SHARE = 0.991, 0.9991
+"""Extension of an arm ÷ its length from which on it stretches ever more slowly, and that of a
+straight one: an elbow snaps in the last of it, by 5° a centimetre and more ("soft IK", A. Nicholas,
+2008). What is missing is 2 mm of a person's arm at most."""
 
 _AHEAD: Vector = (-0.15, -0.35, 0.85)
 _ELBOW_AHEAD: Vector = (0.0, -0.9, -0.4)
@@ -272,7 +274,10 @@ def _aim(aim: Vector, arm: Arm, fore: float, chest: Quaternion) -> tuple[Vector,
         (x, y, z), distance = cone_axis(chest, arm.sign), 1.0
     upper, bent = arm.upper, math.cos(MAX_ELBOW_BEND_RAD)
     nearest = math.sqrt(upper * upper + fore * fore + 2.0 * upper * fore * bent)
-    taken = min(max(distance, nearest), STRAIGHT_SHARE * (upper + fore))
+    taken, full = max(distance, nearest), upper + fore
+    if taken > SOFT_SHARE * full:
+        room = (STRAIGHT_SHARE - SOFT_SHARE) * full
+        taken = SOFT_SHARE * full + room * (1.0 - math.exp((SOFT_SHARE * full - taken) / room))
     return (x / distance, y / distance, z / distance), taken
 
 

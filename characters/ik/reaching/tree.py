@@ -33,8 +33,8 @@ from cubeling.characters.skeleton.scalar_quaternions import (
     to_rotation_vector,
 )
 
-FIRST_STEPS, STEPS = 12, 2
-"""Gauss-Newton steps from a pose, and from what was found for the frame before."""
+FIRST_STEPS, STEP_S = 20, 1 / 30
+"""Gauss-Newton steps from a pose; from what was found for an earlier frame, one for so long [s]."""
 
 SHIFT_SPRING: Vector = (5.0, 1.0, 5.0)
 """How stiff the pelvis holds its place, left, up and ahead [1/body height]."""
@@ -60,7 +60,7 @@ COLLAR_RANGE_RAD = math.radians(25.0)
 LIMIT_SPRING = 14.0
 """How stiff a joint is beyond its range."""
 
-ELBOW_SPRING, EASY_FLEXION_RAD = 1.0, math.radians(61.0)
+ELBOW_SPRING, EASY_FLEXION_RAD = 2.0, math.radians(61.0)
 """How stiff an elbow is that is bent less than it is at ease [rad]."""
 
 KNEE_SPRING, LEG_SPRING = 1.2, 4.0
@@ -90,6 +90,9 @@ out of reach pulls with a finite force."""
 SPARE, MAX_SHORT = 0.015, 0.06
 """Length of an arm that is kept in reserve, and what it may lack at most before it pulls no harder,
 in arm lengths."""
+
+RELAXATION = 0.65
+"""Share of each step that is made: where a range ends, whole steps go to and fro about the end."""
 
 MAX_STEP_RAD, MAX_STEP_HEIGHTS = 0.6, 0.12
 """Longest step of a solution."""
@@ -294,7 +297,7 @@ class _Energy:
         matrix[self.diagonal, self.diagonal] += stiff
         change = np.linalg.solve(matrix, np.array(self.misses) @ jacobian + slope).tolist()
         shifted = max(map(abs, change[:3])) / (MAX_STEP_HEIGHTS * self.height)
-        size = 1.0 / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
+        size = RELAXATION / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
         return self._planted(
             [value - size * more for value, more in zip(state, change, strict=True)]
         )

@@ -5,13 +5,13 @@ it to where their feet are, trunk and collarbones turn, and arms are bent as `Up
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from cubeling.characters.ik import two_bones
-from cubeling.characters.ik.reaching.arms import scale_vector
+from cubeling.characters.ik.reaching.arms import scale_vector, to_vector
 from cubeling.characters.ik.reaching.bending import HandOnItsWay
 from cubeling.characters.ik.reaching.kinematics import Frames
 from cubeling.characters.ik.reaching.targets import NEUTRAL_REACH, HandTarget, ReachStyle
@@ -62,9 +62,6 @@ class WholeBody:
         for place, parent in enumerate(kinematics.parents):
             carried.append(place == self._pelvis or (parent >= 0 and carried[parent]))
         self._carried = carried
-        arms = {number[joint] for arm in upper.arms.values() for joint in arm.joints[2:]}
-        unused = arms | set(self.neck)
-        self._moves = [each and place not in unused for place, each in enumerate(carried)]
         moved = [joint for leg in stance.legs for joint in leg if carried[number[joint]]]
         self._leg_rows, self._neck_rows = np.array(moved, np.intp), np.array(stance.neck, np.intp)
 
@@ -105,44 +102,32 @@ class WholeBody:
 
     def move_pelvis(
         self, local: Array, shifts: Array, frames: Frames, tree: PlacedTree, settled: Settled
-    ) -> Frames:
-        """Move the pelvis and bend the legs in local transforms; return the frames after that."""
+    ) -> None:
+        """Move the pelvis in local transforms, and bend the legs so that feet stay as they are."""
         if not self.legs:
-            return frames
-        whole, centre = from_rotation_vector(settled.pelvis), add(tree.centre, settled.shift)
-
-        def moved(place: Vector) -> Vector:
-            return add(centre, rotate(whole, subtract(place, tree.centre)))
-
-        turns = [
-            multiply(whole, turn) if carried else turn
-            for turn, carried in zip(frames.turns, self._moves, strict=True)
-        ]
-        places = [
-            moved(place) if carried else place
-            for place, carried in zip(frames.places, self._moves, strict=True)
-        ]
-        kinematics, pelvis = self.upper.kinematics, self._pelvis
+            return
+        kinematics, pelvis, (turns, places) = self.upper.kinematics, self._pelvis, frames
         parents, row = kinematics.parents, kinematics.stance.pelvis
-        above = parents[pelvis]
-        back = conjugate(turns[above]) if above >= 0 else IDENTITY
-        base = places[above] if above >= 0 else (0.0, 0.0, 0.0)
-        local[row] = multiply(back, turns[pelvis])
-        x, y, z = rotate(back, subtract(places[pelvis], base))
-        shifts[row] = np.array([x, y, z]) / kinematics.size_above(pelvis)
+        above, whole = parents[pelvis], from_rotation_vector(settled.pelvis)
+        turn = turns[above] if above >= 0 else IDENTITY
+        local[row] = multiply(conjugate(turn), multiply(whole, turns[pelvis]))
+        offset = subtract(places[pelvis], tree.centre)
+        moved = add(settled.shift, subtract(rotate(whole, offset), offset))
+        x, y, z = rotate(conjugate(turn), moved)
+        shifts[row] += np.array([x, y, z]) / kinematics.size_above(pelvis)
         rows: list[Quaternion] = []
         for hip, knee, ankle in self.legs:
-            foot = frames.places[ankle]
-            upper, lower = two_bones.reach(places[hip], places[knee], moved(foot), foot)
-            thigh, shin = multiply(upper, turns[hip]), multiply(upper, lower)
-            rows.append(multiply(conjugate(turns[parents[hip]]), thigh))
+            # As the pelvis sees it, the foot moves: its legs then bend in the planes of the pose.
+            foot = seen_from_pelvis(places[ankle], tree, settled)
+            upper, lower = two_bones.reach(places[hip], places[knee], places[ankle], foot)
+            both = multiply(upper, lower)
+            rows.append(multiply(conjugate(turns[parents[hip]]), multiply(upper, turns[hip])))
             above_knee = multiply(upper, turns[parents[knee]])
-            rows.append(multiply(conjugate(above_knee), multiply(shin, turns[knee])))
+            rows.append(multiply(conjugate(above_knee), multiply(both, turns[knee])))
             if self._carried[ankle]:
-                above_foot = multiply(shin, turns[parents[ankle]])
-                rows.append(multiply(conjugate(above_foot), frames.turns[ankle]))
+                above_foot = multiply(whole, multiply(both, turns[parents[ankle]]))
+                rows.append(multiply(conjugate(above_foot), turns[ankle]))
         local[self._leg_rows] = rows
-        return Frames(turns, places)
 
     def level_head(self, local: Array, frames: Frames, turned: Quaternion) -> None:
         """Let neck and head undo most of a turn of the chest from its pose, that of the frames."""
@@ -218,15 +203,13 @@ class PlacedBody:
         """Return the pose of a tree at rest, with its hands at their places."""
         body, upper, frames = self.body, self.body.upper, self.frames
         local, shifts = self.pose.rotations.copy(), self.pose.translations.copy()
-        whole = from_rotation_vector(settled.pelvis)
-        turned = multiply(whole, from_rotation_vector(settled.spine))
+        turned = multiply(from_rotation_vector(settled.pelvis), from_rotation_vector(settled.spine))
         body.level_head(local, frames, turned)
         body.hang_arms(local, frames, turned)
-        moved = body.move_pelvis(local, shifts, frames, self.tree, settled)
-        spine = rotate(whole, settled.spine)
-        hands = [self._carried(moved, hand, settled, whole) for hand in self.hands]
-        torso = upper.kinematics.torso(moved)
-        upper.bring(local, moved, torso, hands, (spine, spine), style)
+        body.move_pelvis(local, shifts, frames, self.tree, settled)
+        # What the pelvis carries is solved as it sees it: as if it had not moved, but the places.
+        hands = [self._seen(hand, settled) for hand in self.hands]
+        upper.bring(local, frames, self.torso, hands, (settled.spine, settled.spine), style)
         return Pose(shifts, local, self.pose.scales, self.pose.morphs)
 
     def _pull(self, hand: HandOnItsWay) -> Pull:
@@ -239,16 +222,26 @@ class PlacedBody:
         weight = 0.0 if hand.target.kind == "point" else hand.target.weight
         return Pull(hand.arm, hand.effector.fore, base, hand.shoulder, hand.place, weight)
 
-    def _carried(
-        self, frames: Frames, hand: HandOnItsWay, settled: Settled, whole: Quaternion
-    ) -> HandOnItsWay:
-        """Return a hand whose shoulder the pelvis has moved, with its collarbone turned."""
-        number, (collar, upper, *_) = self.body.upper.kinematics.number, hand.arm.joints
-        shoulder = frames.places[number[upper]]
-        if collar < 0:
-            return hand._replace(shoulder=shoulder)
-        swung = from_rotation_vector(rotate(whole, settled.collar(hand.arm.hand.side)))
-        base = frames.places[number[collar]]
-        return hand._replace(
-            shoulder=add(base, rotate(swung, subtract(shoulder, base))), swung=swung
-        )
+    def _seen(self, hand: HandOnItsWay, settled: Settled) -> HandOnItsWay:
+        """Return a hand as the pelvis sees it, with its collarbone turned."""
+        target = hand.target
+        if target.palm is not None or target.fingers is not None:
+            back = conjugate(from_rotation_vector(settled.pelvis))
+            palm, fingers = (
+                None if each is None else rotate(back, to_vector(each))
+                for each in (target.palm, target.fingers)
+            )
+            target = replace(target, palm=palm, fingers=fingers)
+        place = seen_from_pelvis(hand.place, self.tree, settled)
+        collar, shoulder, swung = hand.arm.joints[0], hand.shoulder, IDENTITY
+        if collar >= 0:
+            swung = from_rotation_vector(settled.collar(hand.arm.hand.side))
+            base = self.frames.places[self.body.upper.kinematics.number[collar]]
+            shoulder = add(base, rotate(swung, subtract(shoulder, base)))
+        return hand._replace(target=target, place=place, shoulder=shoulder, swung=swung)
+
+
+def seen_from_pelvis(place: Vector, tree: PlacedTree, settled: Settled) -> Vector:
+    """Return where a place would be that moved against the pelvis as this moves to its rest [m]."""
+    away = subtract(place, add(tree.centre, settled.shift))
+    return add(tree.centre, rotate(conjugate(from_rotation_vector(settled.pelvis)), away))
