@@ -18,7 +18,7 @@ from cubeling.characters.ik.reaching import HandTarget, ReachStyle, UpperBody
 from cubeling.characters.ik.reaching.arms import scale_vector
 from cubeling.characters.ik.reaching.surface import BodySurface
 from cubeling.characters.ik.reaching.tree import FIRST_STEPS, STEP_S, Settled
-from cubeling.characters.ik.reaching.whole_body import PlacedBody, WholeBody
+from cubeling.characters.ik.reaching.whole_body import PlacedBody
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.standing import idle_clips
 from cubeling.characters.motion.curves import ease
@@ -165,7 +165,7 @@ class ReachLayer:
 
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._body = character.upper_body
-        self._whole = WholeBody.of(self._body)
+        self._whole = character.whole_body
         self._settled: Settled | None = None
         self._shown_tree: NDArray[np.float64] | None = None
         self._tree_decay: OffsetDecay | None = None
@@ -256,7 +256,12 @@ class ReachLayer:
             return pose
         share = context.rest if self._four_legs else 1.0
         targets = {
-            side: HandTarget(hand.place, hand.intent.kind, weight=hand.weight * share)
+            side: HandTarget(
+                hand.place,
+                hand.intent.kind,
+                palm=context.direction_in_character(hand.intent.palm),
+                weight=hand.weight * share,
+            )
             for side, hand in hands.items()
             if hand.intent is not None
         }

@@ -315,8 +315,8 @@ class UpperBody:
         """Return what of a hand is brought to a place."""
         hand = arm.hand
         pronation = 0.0 if self._four_legs else PRONATION_RAD
-        if self._four_legs or kind in ("reach", "grasp"):
-            held = 0.0 if kind == "grasp" else pronation
+        if self._four_legs or kind in ("reach", "grasp", "hold"):
+            held = pronation if kind == "reach" else 0.0
             return effector_of(arm, to_vector(hand.palm), pronation=held)
         tips = self.shapes.posture(hand.side, SHAPE_OF_KIND[kind]).tips
         finger = next((name for name in _FINGER_OF_KIND[kind] if name in tips), None)

@@ -4,6 +4,7 @@ The tree is at rest with hands at their places (`tree.py`); then the pelvis move
 it to where their feet are, trunk and collarbones turn, and arms are bent as `UpperBody` does it.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -15,7 +16,7 @@ from cubeling.characters.ik.reaching.arms import scale_vector, to_vector
 from cubeling.characters.ik.reaching.bending import HandOnItsWay
 from cubeling.characters.ik.reaching.kinematics import Frames
 from cubeling.characters.ik.reaching.targets import NEUTRAL_REACH, HandTarget, ReachStyle
-from cubeling.characters.ik.reaching.torso import PlacedTorso
+from cubeling.characters.ik.reaching.torso import PlacedTorso, Reaching, shortfall
 from cubeling.characters.ik.reaching.tree import (
     FIRST_STEPS,
     PlacedTree,
@@ -43,6 +44,9 @@ from cubeling.characters.skeleton.scalar_quaternions import (
 
 LEVEL_SHARE, MAX_LEVEL_RAD = 0.7, 0.9
 """Part of the turn of the chest that neck and head undo, and how far at most: it sees on."""
+
+EFFORT_STEPS = 10
+"""Steps to find how far a hand gets: fewer than to look right."""
 
 HANG_SHARE = 0.8
 """Part of the lean of the chest that an arm undoes that has nothing to do: it hangs."""
@@ -99,6 +103,18 @@ class WholeBody:
         """Return a pose with its hands where they are to be, or as near as they get."""
         placed = self.place(pose, left, right)
         return pose if placed is None else placed.bring(placed.settle(style), style)
+
+    def shortfall(self, pose: Pose, place: Sequence[float] | Array) -> float:
+        """Return what the nearer hand lacks to a place, (3,) [m], in lengths of its arm."""
+        upper, number, target = self.upper, self.upper.kinematics.number, HandTarget(place)
+        where, places = to_vector(place), upper.kinematics.frames(pose).places
+        side = min(
+            upper.arms,
+            key=lambda each: math.dist(where, places[number[upper.arms[each].joints[1]]]),
+        )
+        placed = self.place(pose, **{side: target})
+        assert placed is not None
+        return placed.shortfall(placed.settle(steps=EFFORT_STEPS))
 
     def move_pelvis(
         self, local: Array, shifts: Array, frames: Frames, tree: PlacedTree, settled: Settled
@@ -198,6 +214,17 @@ class PlacedBody:
         """Return its tree at rest; see `tree.settle`."""
         pulls = {hand.arm.hand.side: self._pull(hand) for hand in self.hands}
         return settle(self.tree, pulls, style.power, gaze, start, steps)
+
+    def shortfall(self, settled: Settled) -> float:
+        """Return what its hands lack to their places in a tree at rest, in lengths of their arms.
+
+        That of the worst hand; 0 where all are there.
+        """
+        seen = [self._seen(hand, settled) for hand in self.hands]
+        reaching = [
+            Reaching(each.arm, each.effector.fore, each.shoulder, each.place) for each in seen
+        ]
+        return shortfall(self.torso, reaching, settled.spine)
 
     def bring(self, settled: Settled, style: ReachStyle = NEUTRAL_REACH) -> Pose:
         """Return the pose of a tree at rest, with its hands at their places."""
