@@ -33,6 +33,14 @@ from cubeling.characters.skeleton.scalar_quaternions import (
 SWIVEL_DEG = (-20.0, 70.0)
 """Swivel of the elbow from the vertical plane outward, closed and open [degrees]."""
 
+NATURAL_SWIVEL_DEG: Vector = (16.0, 31.0, 8.0)
+"""Swivel of an elbow that is not asked for [degrees]: at the shoulder, and for each arm length that
+the wrist is higher, and further ahead. Fitted to seven recorded people; a term for the wrist to the
+side is none (`python -m tests.bench.ik`)."""
+
+PAW_SWIVEL_DEG: Vector = (25.0, 0.0, 0.0)
+"""The same of a front leg."""
+
 MAX_ELBOW_BEND_RAD = math.radians(150.0)
 """How far an elbow bends."""
 
@@ -93,6 +101,9 @@ class Arm:
 
     rest_turns: tuple[Quaternion, Quaternion]
     """Rotations at rest of the lower arm and the hand."""
+
+    natural_swivel: Vector
+    """As `NATURAL_SWIVEL_DEG` [rad]."""
 
     rigid: bool
     """Whether the fingers do not hang at the hand's joint alone: the wrist stays as at rest."""
@@ -164,6 +175,9 @@ def find_arm(skeleton: Skeleton, anatomy: Anatomy, hand: HandJoints) -> Arm | No
         to_vector(places[lower]),
         to_vector(places[wrist]),
         (to_quaternion(turns[lower]), to_quaternion(turns[wrist])),
+        scale_vector(
+            PAW_SWIVEL_DEG if anatomy.kind == "quadruped" else NATURAL_SWIVEL_DEG, math.pi / 180.0
+        ),
         any(wrist not in chains[joints[0]] for joints in hand.fingers.values()),
     )
 
@@ -228,6 +242,14 @@ def bend(
     wrist = subtract(place, rotate(moved, effector.offset))
     elbow = add(shoulder, scale_vector(along, arm.upper))
     return BentArm(upper, turn, multiply(moved, arm.rest_turns[1]), wrist, elbow)
+
+
+def natural_swivel(arm: Arm, shoulder: Vector, place: Vector, chest: Quaternion) -> float:
+    """Return the swivel of the elbow of a hand at a place [rad], if none is asked for."""
+    size = 1.0 / (arm.upper + arm.fore)
+    _, up, ahead = rotate(conjugate(chest), scale_vector(subtract(place, shoulder), size))
+    still, by_up, by_ahead = arm.natural_swivel
+    return still + by_up * min(max(up, -1.0), 1.0) + by_ahead * min(max(ahead, -1.0), 1.0)
 
 
 def bend_to_wrist(

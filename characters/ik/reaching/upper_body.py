@@ -21,12 +21,12 @@ from cubeling.characters.ik.reaching.arms import (
     bend_to_wrist,
     effector_of,
     find_arm,
+    natural_swivel,
     scale_vector,
     swivel_of,
     to_vector,
 )
 from cubeling.characters.ik.reaching.bending import (
-    NEUTRAL_SWIVEL,
     Bearer,
     HandOnItsWay,
     open_elbow,
@@ -259,9 +259,8 @@ class UpperBody:
         if target.kind == "point":
             return twist_forearm(arm, point_finger(hand, *bearer))
         if target.palm is None and target.fingers is None:
-            return bend(
-                arm, hand.effector, bearer.shoulder, hand.place, bearer.chest, NEUTRAL_SWIVEL
-            )
+            swivel = natural_swivel(arm, bearer.shoulder, hand.place, bearer.chest)
+            return bend(arm, hand.effector, bearer.shoulder, hand.place, bearer.chest, swivel)
         return twist_forearm(arm, orient_hand(hand, self._wrists[arm.hand.side], *bearer))
 
     def _write(
