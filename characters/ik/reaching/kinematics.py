@@ -16,6 +16,7 @@ from cubeling.characters.ik.reaching.stance import Stance
 from cubeling.characters.ik.reaching.torso import FOUR_LEGS, PlacedTorso
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.joint_chains import chains_to_root
+from cubeling.characters.skeleton.natural_limits import natural_limits
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
@@ -67,6 +68,11 @@ class UpperBodyKinematics:
         self._sizes = _scales_above(rest, self._order, skeleton)
         self.trunk_joints = np.array(trunk, np.intp)
         """The skeleton's joints that bend the trunk, from the lowest one on."""
+        limits = natural_limits(skeleton, anatomy)[trunk]
+        # Of (twist, side, bend), as bow, turn and tilt.
+        low, high = (each.sum(0)[[2, 0, 1]].tolist() for each in (limits.low, limits.high))
+        self.spine_ranges: list[tuple[float, float]] = list(zip(low, high, strict=True))
+        """How far they bow, turn and tilt together, by their natural limits [rad]."""
         self._trunk = [number[joint] for joint in trunk]
         self._pelvis = self.parents[self._trunk[0]] if self._trunk else -1
         self._first = [number[arm.joints[arm.joints[0] < 0]] for arm in arms.values()]

@@ -48,11 +48,12 @@ SPINE_SPRING: Vector = (2.8, 2.4, 4.0)
 COLLAR_SPRING = 3.0
 """How stiff a collarbone is."""
 
-PELVIS_RANGE_DEG = ((-15.0, 60.0), (-40.0, 40.0), (-12.0, 12.0))
+PELVIS_RANGE_DEG = ((-15.0, 50.0), (-40.0, 40.0), (-12.0, 12.0))
 """How far a pelvis bows, turns and tilts over planted feet [degrees]."""
 
 SPINE_RANGE_DEG = ((-20.0, 65.0), (-40.0, 40.0), (-30.0, 30.0))
-"""How far a whole spine does, however many joints it has [degrees]."""
+"""How far a whole spine does, however many joints it has [degrees]; one of few joints bends less,
+as far as these do by their natural limits."""
 
 COLLAR_RANGE_RAD = math.radians(25.0)
 """How far a collarbone turns."""
@@ -66,11 +67,11 @@ ELBOW_SPRING, EASY_FLEXION_RAD = 2.0, math.radians(61.0)
 KNEE_SPRING, LEG_SPRING = 1.2, 4.0
 """How stiff a knee is, and a leg whose length changes."""
 
-LONGEST_LEG, SHORTEST_LEG = 0.99, 0.4
+LONGEST_LEG, SHORTEST_LEG = 0.99, 0.55
 """Extension of a leg that is straight, unless the pose has it straighter, and of one that is folded
 up, ÷ its length."""
 
-BALANCE_SPRING, FALLING_SPRING = 12.0, 40.0
+BALANCE_SPRING, FALLING_SPRING = 12.0, 120.0
 """How stiff the middle of mass holds its place over the feet, and beyond them [1/body height]."""
 
 FOOT_HALF_WIDTH, FOOT_AHEAD, FOOT_BEHIND = 0.02, 0.07, 0.04
@@ -141,6 +142,9 @@ class PlacedTree:
     """A body in one pose, in the character frame."""
 
     torso: PlacedTorso
+
+    spine_ranges: Sequence[tuple[float, float]]
+    """How far the joints of its spine bow, turn and tilt together [rad]."""
 
     centre: Vector
     """The middle between the hips [m]."""
@@ -257,8 +261,9 @@ class _Energy:
         self.springs += [COLLAR_SPRING] * 3 * len(pulls)
         held = to_rotation_vector(chest)
         self.ranges = [*_PELVIS_RANGES]
-        for (low, high), own in zip(_SPINE_RANGES, held, strict=True):
-            self.ranges.append((min(low - own, 0.0), max(high - own, 0.0)))
+        for whole, joints, own in zip(_SPINE_RANGES, tree.spine_ranges, held, strict=True):
+            low, high = max(whole[0], joints[0]) - own, min(whole[1], joints[1]) - own
+            self.ranges.append((min(low, 0.0), max(high, 0.0)))
         self.ranges += [(-COLLAR_RANGE_RAD, COLLAR_RANGE_RAD)] * 3 * len(pulls)
         self.diagonal = np.arange(len(self.springs))
         self.rows: list[Row] = []

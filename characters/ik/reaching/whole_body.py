@@ -202,7 +202,10 @@ class PlacedBody:
         if legs:
             centre = scale_vector(add(legs[0].hip, legs[1].hip), 0.5)
         eyes = places[body.neck[-1]] if body.neck else self.torso.top
-        return PlacedTree(self.torso, centre, legs, body.upper.kinematics.height, eyes)
+        kinematics = body.upper.kinematics
+        return PlacedTree(
+            self.torso, kinematics.spine_ranges, centre, legs, kinematics.height, eyes
+        )
 
     def settle(
         self,

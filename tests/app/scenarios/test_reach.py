@@ -20,7 +20,7 @@ from cubeling.app.scenarios.reach_intents import (
     gesture_times,
     leave,
 )
-from cubeling.app.scenarios.reach_places import sides_of_cube
+from cubeling.app.scenarios.reach_places import nearest_point_of_cube, sides_of_cube
 from cubeling.characters import Animator, Character
 from cubeling.characters.behaviour.intents import ReachIntent, Times
 from cubeling.characters.rendering.toys import TOYS, toy
@@ -87,7 +87,12 @@ def test_what_it_cannot_reach_frustrates_it_and_what_it_reaches_delights_it(play
 
 def test_it_bends_down_for_a_cube_that_the_torso_alone_does_not_reach(play):
     """The cube is touched from where it stands, which needs hips and knees."""
-    play.on(2.5, x=0.02)
+    play.on(2.5, x=-0.03)
+    touched = nearest_point_of_cube(np.eye(4), 0.06, play.body.chest - [-0.03, 0.03, 0.02])
+    seen = (touched + [-0.03, 0.03, 0.02] - play.body.place) / play.animator.scale
+    turn = play.body.posed.table_from_character[:3, :3] / play.animator.scale
+    rest = play.character.skeleton.rest
+    assert play.character.upper_body.effort(rest, seen @ turn) > 1.3
     assert play.events[:1] == ["reached"]
     start = np.array([play.reach.start.x, 0.0, play.reach.start.z])
     assert np.linalg.norm(play.body.place - start) < 0.02
