@@ -30,8 +30,9 @@ limits
 turn
     As above, of the tree; the share of places with less than 5° a centimetre.
 
-The last line is the cost of a frame in play, in CPU time, whole body and torso with arm in turns, as a multiple
-of OpenCV's detection of markers in a frame of 1280×720 (`MAX_COST` of it for the tree).
+The last line is the cost of a frame in play, in CPU time, whole body and torso with arm in turns,
+as a multiple of OpenCV's detection of markers in a frame of 1280×720 (`MAX_COST` of it for the
+tree).
 
 Exits with 1 if a palm misses by a centimetre or more, or the tree costs more.
 """

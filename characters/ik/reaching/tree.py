@@ -10,6 +10,7 @@ found at once, by Gauss-Newton steps on the energy. Limbs are bent to it by the 
 """
 
 import math
+import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -70,6 +71,9 @@ KNEE_SPRING, LEG_SPRING = 1.2, 4.0
 LONGEST_LEG, SHORTEST_LEG = 0.99, 0.55
 """Extension of a leg that is straight, unless the pose has it straighter, and of one that is folded
 up, ÷ its length."""
+
+TAUT_LEG = 300.0
+"""How stiff a straight leg is."""
 
 BALANCE_SPRING, FALLING_SPRING = 12.0, 120.0
 """How stiff the middle of mass holds its place over the feet, and beyond them [1/body height]."""
@@ -209,7 +213,7 @@ def settle(
     state = [0.0] * len(energy.springs) if start is None else energy.state_of(start)
     for _ in range(steps):
         state = energy.step(state)
-    return energy.settled(state)
+    return energy.settled(energy.planted(state))
 
 
 Row = list[float]
@@ -267,6 +271,7 @@ class _Energy:
         self.ranges += [(-COLLAR_RANGE_RAD, COLLAR_RANGE_RAD)] * 3 * len(pulls)
         self.diagonal = np.arange(len(self.springs))
         self.rows: list[Row] = []
+        self.leg_rows: list[tuple[Row, float]] = []
         self.misses: list[float] = []
 
     def state_of(self, start: Settled) -> list[float]:
@@ -285,6 +290,7 @@ class _Energy:
 
     def step(self, state: list[float]) -> list[float]:
         """Return the state after one Gauss-Newton step."""
+        state = self.planted(state)
         stiff, slope = [], []
         for value, spring, (low, high) in zip(state, self.springs, self.ranges, strict=True):
             square = spring * spring
@@ -295,36 +301,39 @@ class _Energy:
                 pull += LIMIT_SPRING * LIMIT_SPRING * over
             stiff.append(square)
             slope.append(pull)
-        self.rows, self.misses = [], []
+        self.rows, self.misses, self.leg_rows = [], [], []
         self._add_targets(state, stiff)
         jacobian = np.array(self.rows).reshape(-1, len(state))
         matrix = jacobian.T @ jacobian
         matrix[self.diagonal, self.diagonal] += stiff
-        change = np.linalg.solve(matrix, np.array(self.misses) @ jacobian + slope).tolist()
+        force = np.array(self.misses) @ jacobian + slope
+        change = np.linalg.solve(matrix, force).tolist()
+        # A leg gets no longer than straight: a step that counted on that would end beside its way.
+        for row, room in self.leg_rows:
+            if -math.fsum(map(operator.mul, row, change)) > room:
+                longer = np.array(row)
+                matrix += TAUT_LEG * TAUT_LEG * np.outer(longer, longer)
+                force = force - TAUT_LEG * TAUT_LEG * room * longer
+                change = np.linalg.solve(matrix, force).tolist()
         shifted = max(map(abs, change[:3])) / (MAX_STEP_HEIGHTS * self.height)
         size = RELAXATION / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
-        return self._planted(
-            [value - size * more for value, more in zip(state, change, strict=True)]
-        )
+        return [value - size * more for value, more in zip(state, change, strict=True)]
 
-    def _planted(self, state: list[float]) -> list[float]:
-        """Return a state whose pelvis is as low as its legs need it, and no lower than they fold.
-
-        A spring for that would be so stiff that steps went past it to and fro.
-        """
+    def planted(self, state: list[float]) -> list[float]:
+        """Return a state whose pelvis is as low as its legs need, and no lower than they fold."""
         if not self.legs:
             return state
         whole = from_rotation_vector((state[3], state[4], state[5]))
-        highest, lowest = math.inf, -math.inf
+        heights, lowest = [], -math.inf
         for leg, own in zip(self.legs, self.own, strict=True):
             hip = add(self.centre, rotate(whole, subtract(leg.hip, self.centre)))
             x, y, z = subtract(hip, leg.ankle)
             x, z = x + state[0], z + state[2]
             longest = max(own, LONGEST_LEG) * leg.length
-            highest = min(highest, math.sqrt(max(longest * longest - x * x - z * z, 0.0)) - y)
+            heights.append(math.sqrt(max(longest * longest - x * x - z * z, 0.0)) - y)
             lowest = max(lowest, SHORTEST_LEG * leg.length - y)
-        state[1] = min(max(state[1], min(lowest, 0.0)), highest)
-        return state
+        shift = min(max(state[1], min(lowest, 0.0)), *heights)
+        return [state[0], shift, *state[2:]]
 
     def _add_targets(self, state: Sequence[float], stiff: list[float]) -> None:
         """Add the rows of all targets; to `stiff`, the diagonal, what pulls add to it."""
@@ -385,7 +394,10 @@ class _Energy:
             far = max(length(aim), 1e-9)
             miss, slope = _standing(far / leg.length, own)
             way = scale_vector(aim, -slope / (far * leg.length))
-            self.rows.append([*way, *cross(subtract(hip, centre), way), 0.0, 0.0, 0.0, *none])
+            row = [*way, *cross(subtract(hip, centre), way), 0.0, 0.0, 0.0, *none]
+            self.rows.append(row)
+            room = max(own, LONGEST_LEG) - far / leg.length
+            self.leg_rows.append(([value / slope for value in row], room))
             self.misses.append(miss)
         if self.legs:
             top = add(centre, rotate(whole, subtract(torso.carry(step, torso.top), old)))
