@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cubeling.characters.ik.reaching.arms import Arm, cone_axis, scale_vector
+from cubeling.characters.ik.reaching.arms import cone_axis, scale_vector
+from cubeling.characters.ik.reaching.limb_springs import Pull, standing, stiffen, straining
 from cubeling.characters.ik.reaching.torso import PlacedTorso
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
@@ -62,12 +63,6 @@ COLLAR_RANGE_RAD = math.radians(25.0)
 LIMIT_SPRING = 14.0
 """How stiff a joint is beyond its range."""
 
-ELBOW_SPRING, EASY_FLEXION_RAD = 2.0, math.radians(61.0)
-"""How stiff an elbow is that is bent less than it is at ease [rad]."""
-
-KNEE_SPRING, LEG_SPRING = 1.2, 4.0
-"""How stiff a knee is, and a leg whose length changes."""
-
 LONGEST_LEG, SHORTEST_LEG = 0.99, 0.55
 """Extension of a leg that is straight, unless the pose has it straighter, and of one that is folded
 up, ÷ its length."""
@@ -88,14 +83,6 @@ CONE_SPRING, CONE_RAD = 3.0, math.radians(85.0)
 GAZE_SPRING, GAZE_RAD = 1.0, math.radians(55.0)
 """How stiff a neck is that is turned further than this to see."""
 
-STRAIGHT_RAD = math.radians(16.0)
-"""An elbow bent less than this is as good as straight: its spring goes on linearly, so that a place
-out of reach pulls with a finite force."""
-
-SPARE, MAX_SHORT = 0.015, 0.06
-"""Length of an arm that is kept in reserve, and what it may lack at most before it pulls no harder,
-in arm lengths."""
-
 RELAXATION = 0.65
 """Share of each step that is made: where a range ends, whole steps go to and fro about the end."""
 
@@ -105,27 +92,6 @@ MAX_STEP_RAD, MAX_STEP_HEIGHTS = 0.6, 0.12
 UPPER_MASS, UPPER_MIDDLE = 0.65, 0.7
 """Mass of trunk, head and arms ÷ that of the body, and where its middle is between hips and
 shoulders."""
-
-
-class Pull(NamedTuple):
-    """A hand that pulls."""
-
-    arm: Arm
-
-    fore: float
-    """From its elbow to what reaches [m]."""
-
-    base: Vector
-    """Where its collarbone begins; its shoulder if it has none [m]."""
-
-    shoulder: Vector
-    """Where its upper arm begins [m]."""
-
-    place: Vector
-    """Where it pulls to [m]."""
-
-    weight: float
-    """0 not at all … 1."""
 
 
 class Strut(NamedTuple):
@@ -373,16 +339,16 @@ class _Energy:
             shoulder = add(centre, rotate(whole, subtract(place, old)))
             aim = subtract(pull.place, shoulder)
             far = max(length(aim), 1e-9)
-            miss, slope = _straining(pull, far, self.power)
+            miss, slope = straining(pull, far, self.power)
             if slope:
                 way = scale_vector(aim, -slope / far)
                 row = add_place(miss, way, shoulder, way)
                 lever = rotate(carried, bone)
                 row[9 + at : 12 + at] = rotate(uncarried, cross(lever, way))
-                _stiffen(stiff, 0, (0.0, 0.0, 0.0), aim, miss * slope / far, 1.0)
+                stiffen(stiff, 0, (0.0, 0.0, 0.0), aim, miss * slope / far, 1.0)
                 for first, joint in ((3, centre), (6, waist)):
-                    _stiffen(stiff, first, subtract(shoulder, joint), aim, miss * slope / far)
-                _stiffen(stiff, 9 + at, lever, aim, miss * slope / far)
+                    stiffen(stiff, first, subtract(shoulder, joint), aim, miss * slope / far)
+                stiffen(stiff, 9 + at, lever, aim, miss * slope / far)
             add_direction(CONE_SPRING * pull.weight, cone_axis(chest, pull.arm.sign), aim, CONE_RAD)
         if self.gaze is not None:
             eyes = add(centre, rotate(whole, subtract(torso.carry(step, self.eyes), old)))
@@ -392,7 +358,7 @@ class _Energy:
             hip = add(centre, rotate(whole, subtract(leg.hip, old)))
             aim = subtract(leg.ankle, hip)
             far = max(length(aim), 1e-9)
-            miss, slope = _standing(far / leg.length, own)
+            miss, slope = standing(far / leg.length, own)
             way = scale_vector(aim, -slope / (far * leg.length))
             row = [*way, *cross(subtract(hip, centre), way), 0.0, 0.0, 0.0, *none]
             self.rows.append(row)
@@ -415,53 +381,6 @@ class _Energy:
                     miss = (spring * spring * away + hard * hard * beyond) / size
                 way = scale_vector(axis, size * share)
                 add_place(miss, way, top, scale_vector(axis, size))
-
-
-def _stiffen(
-    stiff: list[float], first: int, lever: Vector, aim: Vector, string: float, own: float = 0.0
-) -> None:
-    """Add what a pull stiffens across its direction: that of a string, and of a pendulum.
-
-    Gauss-Newton leaves it out, and would swing from side to side.
-    """
-    more = string * (own + dot(lever, lever) + max(dot(aim, lever), 0.0))
-    for at in range(first, first + 3):
-        stiff[at] += more
-
-
-def _straining(pull: Pull, far: float, power: float) -> tuple[float, float]:
-    """Return how far an elbow is from its ease, and how that changes with the distance [1/m]."""
-    upper, fore = pull.arm.upper, pull.fore
-    ease = EASY_FLEXION_RAD * (1.0 + 0.3 * power)
-    near = _span(upper, fore, ease)
-    far += SPARE * (upper + fore)
-    if far <= near:
-        return 0.0, 0.0
-    far = near + pull.weight * (far - near)
-    straight = _span(upper, fore, STRAIGHT_RAD)
-    reached = min(far, straight)
-    cosine = (reached * reached - upper * upper - fore * fore) / (2.0 * upper * fore)
-    flexion = math.acos(min(max(cosine, -1.0), 1.0))
-    slope = reached / (upper * fore * math.sin(flexion))
-    most = MAX_SHORT * (upper + fore)
-    size = ELBOW_SPRING * (1.0 + power) * math.sqrt(most / max(far - reached, most))
-    return size * (ease - flexion + slope * (far - reached)), size * slope * pull.weight
-
-
-def _span(upper: float, fore: float, flexion: float) -> float:
-    """Return how far a limb reaches that is bent by an angle [m]."""
-    return math.sqrt(upper * upper + fore * fore + 2.0 * upper * fore * math.cos(flexion))
-
-
-def _standing(extension: float, own: float) -> tuple[float, float]:
-    """Return how far a leg is from its ease, and how that changes with its extension."""
-    bend, held = (math.sqrt(max(1.0 - each, 0.0) + 0.004) for each in (extension, own))
-    # Knee and leg are springs of one length: together they are one.
-    knee = KNEE_SPRING / (2.0 * bend)
-    square = knee * knee + LEG_SPRING * LEG_SPRING
-    force = knee * KNEE_SPRING * (held - bend) + LEG_SPRING * LEG_SPRING * (extension - own)
-    slope = math.sqrt(square)
-    return force / slope, slope
 
 
 _LEFT: Vector = (1.0, 0.0, 0.0)

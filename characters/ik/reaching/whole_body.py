@@ -15,12 +15,12 @@ from cubeling.characters.ik import two_bones
 from cubeling.characters.ik.reaching.arms import scale_vector, to_vector
 from cubeling.characters.ik.reaching.bending import HandOnItsWay
 from cubeling.characters.ik.reaching.kinematics import Frames
+from cubeling.characters.ik.reaching.limb_springs import Pull
 from cubeling.characters.ik.reaching.targets import NEUTRAL_REACH, HandTarget, ReachStyle
 from cubeling.characters.ik.reaching.torso import PlacedTorso, Reaching, shortfall
 from cubeling.characters.ik.reaching.tree import (
     FIRST_STEPS,
     PlacedTree,
-    Pull,
     Settled,
     Strut,
     settle,
