@@ -180,7 +180,10 @@ def whole_row(character: Character) -> list[str]:
     for place in grid(character):
         poses = body.reach(pose, HandTarget(place)), whole.reach(pose, HandTarget(place))
         misses.append(
-            [float(np.linalg.norm(body.palm(each, "left") - place)) / metre for each in poses]
+            [
+                float(np.linalg.norm(np.asarray(body.palm(each, "left")) - place)) / metre
+                for each in poses
+            ]
         )
         beyond.append((limits.excess(poses[1].rotations)[checked] > allowed + 1e-6).any())
         moved = poses[1].globals(skeleton)[ankles, :3, 3] - still[ankles]

@@ -295,7 +295,7 @@ class ReachLayer:
         if self._tree_decay is not None:
             values = values + self._tree_decay.at(now - self._switched)
         self._shown_tree = values
-        return Settled(*map(tuple, values.tolist()))
+        return Settled(*((x, y, z) for x, y, z in values.tolist()))
 
     def _style(self, hands: dict[str, ReachingHand], elapsed: float) -> ReachStyle:
         intents = [hand.intent for hand in hands.values() if hand.intent is not None]
