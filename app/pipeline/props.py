@@ -131,12 +131,25 @@ class PosedBody:
         """Whether it has a hand to reach with."""
         return bool(self.parts.hands)
 
-    def effort(self, target: Point) -> float:
-        """Return how hard a point, (3,) in the table frame [m], is to reach from where it stands.
+    def effort(self, target: Point, placed: Point | None = None) -> float:
+        """Return how hard a point, (3,) in the table frame [m], is to reach.
 
-        0 is within the arm, 1 the limit of trunk and arm, more is beyond; infinite without arms.
+        0 is within the arm, 1 the limit of the body, more is beyond; infinite without arms. It is
+        reached from where the body stands, or from another place of it, (4, 4).
         """
-        return reach_effort(self.character, self.posed.table_from_character, target)
+        place = self.posed.table_from_character if placed is None else placed
+        return reach_effort(self.character, place, target)
+
+    def beside(self, point: Point, distance: float) -> Point:
+        """Return its place, (4, 4), if it went straight to a distance [m] from a point, (3,)."""
+        placed = self.posed.table_from_character.copy()
+        x, _, z = point - placed[:3, 3]
+        size, scale = max(float(np.hypot(x, z)), 1e-9), float(placed[1, 1])
+        sine, cosine = x / size, z / size
+        placed[[0, 2], 3] = point[[0, 2]] - distance * np.array([sine, cosine])
+        turned = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
+        placed[:3, :3] = scale * turned
+        return placed
 
     def palm(self, side: Side) -> Point | None:
         """Return where the palm of a hand is, (3,) in the table frame [m]; None without hands."""

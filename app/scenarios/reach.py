@@ -11,7 +11,7 @@ from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.reach_behaviour import ReachingBody, ReachScene
-from cubeling.app.scenarios.reach_catching import ARRIVED_M, Catching, Prospect
+from cubeling.app.scenarios.reach_catching import ARRIVED_M, HARD, Catching, Prospect
 from cubeling.app.scenarios.reach_gifts import Gifts
 from cubeling.app.scenarios.reach_hints import Facts, facts_of, hint_of
 from cubeling.app.scenarios.reach_places import (
@@ -20,6 +20,7 @@ from cubeling.app.scenarios.reach_places import (
     gap,
     nearest_point_of_cube,
     out_of,
+    sides_of_cube,
     way_to,
 )
 from cubeling.characters import (
@@ -42,15 +43,26 @@ WALK_SPEED, SPEED_PER_M, MAX_SPEED = 2.0, 6.0, 3.0
 NO_HANDS_EFFORT = 3.0
 """Effort of a character without hands that is not beside the cube."""
 
-FACING_CUBE = ("touch", "stretch", "point")
+FACING_CUBE = ("touch", "stretch", "point", "clasp")
 """What it does with its front to the cube; else it turns to the player."""
 
-STAYING = ("watch", "touch", "cheer", "stretch", "shrug", "sulk", "search", "hold", "rejoice")
+STAYING = (
+    "watch",
+    "touch",
+    "cheer",
+    "clasp",
+    "stretch",
+    "shrug",
+    "sulk",
+    "search",
+    "hold",
+    "rejoice",
+)
 """What it does where it stands; it steps out of a cube that is put down on it."""
 
 ICONS = {
     "watch": "stand", "touch": "reach", "sulk": "wait", "shade": "search", "fetch": "walk",
-    "grasp": "take", "put": "give", "hold": "wait", "rejoice": "cheer",
+    "grasp": "take", "put": "give", "hold": "wait", "rejoice": "cheer", "clasp": "take",
 }  # fmt: skip
 """The card of what it does, where that has another name."""
 
@@ -147,6 +159,7 @@ class Reach:
             stand=stand if doing in ("fetch", "carry") else None,
             held=bool(gifts.held),
             hand=gifts.hand,
+            sides=sides_of_cube(cube, self._edge, body.beside(centre, 0.0)[:3, 0]),
         )
         return scene, facts, events
 
@@ -181,6 +194,11 @@ def _prospect(
         near = away <= ARRIVED_M and cube[1, 3] < body.height
         effort = 0.0 if near else NO_HANDS_EFFORT
     touching = not body.has_hands or body.hand_distance(touch) < body.parts.touching
+    aloft = bool(cube[1, 3] > edge)  # more than half of it above where it would rest
+    beside = body.beside(cube[:3, 3], _clasp_distance(body, edge))
+    sides = sides_of_cube(cube, edge, beside[:3, 0])
+    claspable = aloft and len(body.parts.hands) > 1 and effort <= HARD
+    claspable = claspable and max(body.effort(each, beside) for each, _ in sides) <= HARD
     return Prospect(
         now=controls.timestamp,
         seen=situation.cube is not None,
@@ -190,7 +208,13 @@ def _prospect(
         gap=away,
         height=float(cube[1, 3]) / body.height,
         touching=touching,
+        claspable=claspable,
     )
+
+
+def _clasp_distance(body: PosedBody, edge: float) -> float:
+    """Return how far from the middle of a cube it stands that it holds with both hands [m]."""
+    return edge / 2 + body.parts.stand
 
 
 def _going(scene: ReachScene, body: PosedBody, walks: bool, edge: float) -> LocomotionIntent:
@@ -200,6 +224,8 @@ def _going(scene: ReachScene, body: PosedBody, walks: bool, edge: float) -> Loco
         target = around(here, way_to(here, scene.stand, 0.0, walks=walks), scene.cube)
     elif scene.doing == "come":
         target = way_to(here, scene.touch, body.parts.stand, walks=walks)
+    elif scene.doing == "clasp" and gap(here, scene.cube, close := _clasp_distance(body, edge)):
+        target = way_to(here, scene.cube, close, walks=walks)
     elif scene.doing in STAYING and (aside := out_of(here, scene.cube, edge)) is not None:
         target = way_to(here, aside, 0.0, walks=walks)
     else:

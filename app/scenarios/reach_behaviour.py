@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from cubeling.app.pipeline.props import GRIP, PosedBody, Side
 from cubeling.app.scenarios.reach_intents import Ongoing, bundled_gesture, gesture_times
 from cubeling.app.scenarios.reach_places import Point, in_front, look_about
@@ -28,6 +30,9 @@ SHAKE_S, SHAKES = 1.5, 3
 
 CARRY_LEFT, CARRY_UP, CARRY_AHEAD = 0.15, 0.53, 0.19
 """Where a hand carries a thing: to its side, up and ahead, in body heights."""
+
+OVER_CUBE = np.array([0.0, 0.05, 0.0])
+"""Where it looks that holds the cube, from its middle [m]."""
 
 GESTURES = {
     "cheer": "CHEER",
@@ -70,12 +75,16 @@ class ReachScene:
     hand: Side
     """The hand that takes things, and carries them."""
 
+    sides: tuple[tuple[Point, Point], tuple[Point, Point]]
+    """The left and the right side of the cube: its middle [m], and the way out of it there."""
+
 
 class ReachingBody:
     """Makes the `BehaviourIntent` of each frame, with times that last from frame to frame."""
 
     def __init__(self) -> None:
         self._reaches: Ongoing[ReachIntent] = Ongoing()
+        self._second_reaches: Ongoing[ReachIntent] = Ongoing()
         self._gestures: Ongoing[GestureIntent] = Ongoing()
         self._heads: Ongoing[HeadIntent] = Ongoing()
         self._gazes: Ongoing[GazeIntent] = Ongoing()
@@ -84,9 +93,15 @@ class ReachingBody:
         self, now: float, scene: ReachScene | None, body: PosedBody | None
     ) -> BehaviourIntent | None:
         """Return what a frame asks of the body; without a scene it comes to rest."""
+        clasps = scene is not None and scene.doing == "clasp"
+        first = _reach(now, scene, body) if scene and body else None
+        second = _clasp(now, scene, "right") if scene and clasps else None
         intent = BehaviourIntent(
             gestures=self._gestures.update(now, _gesture(now, scene) if scene else None),
-            reaches=self._reaches.update(now, _reach(now, scene, body) if scene and body else None),
+            reaches=(
+                *self._reaches.update(now, first),
+                *self._second_reaches.update(now, second),
+            ),
             heads=self._heads.update(now, _shake(now, scene) if scene else None),
             gazes=self._gazes.update(now, _gaze(now, scene, body) if scene and body else None),
         )
@@ -102,6 +117,8 @@ def _reach(now: float, scene: ReachScene, body: PosedBody) -> ReachIntent | None
     if doing == "stretch":
         style = GestureExpressivity(openness=0.8, power=1.0)
         return ReachIntent("stretch", scene.touch, times, "reach", expressivity=style)
+    if doing == "clasp":
+        return _clasp(now, scene, "left")
     if doing == "point":
         return ReachIntent("point", scene.cube, times, "point")
     if doing in ("grasp", "put") and scene.goal is not None:
@@ -111,6 +128,13 @@ def _reach(now: float, scene: ReachScene, body: PosedBody) -> ReachIntent | None
         place = in_front(body, side * CARRY_LEFT, CARRY_UP, CARRY_AHEAD)
         return ReachIntent("carry", place, times, "grasp", scene.hand)
     return None
+
+
+def _clasp(now: float, scene: ReachScene, hand: Side) -> ReachIntent:
+    """Return a hand flat against its side of the cube."""
+    place, out = scene.sides[hand == "right"]
+    times = Times(now, now + REACH_S)
+    return ReachIntent(f"clasp {hand}", place, times, "hold", hand, palm=-out)
 
 
 def _gesture(now: float, scene: ReachScene) -> GestureIntent | None:
@@ -141,4 +165,6 @@ def _gaze(now: float, scene: ReachScene, body: PosedBody) -> GazeIntent | None:
         return GazeIntent("thing", scene.goal + GRIP, times, "HEAD")
     if scene.doing in ("touch", "stretch", "point", "come", "shade", "hold"):
         return GazeIntent("cube", scene.cube, times, "HEAD")
+    if scene.doing == "clasp":  # to its top, or the face would be hidden behind the hair
+        return GazeIntent("cube", scene.cube + OVER_CUBE, times, "HEAD")
     return None

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Doing = Literal[
-    "watch", "touch", "cheer", "stretch", "shrug", "point", "come", "sulk", "shade", "search"
-]
-"""Watch it at rest, touch it, be glad, stretch in vain, give up, point at it, go to it, wait
-disappointed, shade the eyes against the light, and look about for it."""
+    "watch", "touch", "cheer", "clasp", "stretch", "shrug", "point", "come", "sulk", "shade",
+    "search",
+]  # fmt: skip
+"""Watch it at rest, touch it, be glad, hold it with both hands, stretch in vain, give up, point at
+it, go to it, wait disappointed, shade the eyes against the light, and look about for it."""
 
 HIGH, LOW = 0.95, 0.85
 """Height of the cube's centre, over that of the body, from which it is held up, and below which it
@@ -25,7 +26,7 @@ reach further than the palm, whose limit is 1."""
 EASIER = 0.25
 """By how much the effort must fall below that at which it gave up, to try again."""
 
-NEAR_M = 0.13
+NEAR_M = 0.18
 """A cube that is no further from where it would stand is worth stretching for [m]."""
 
 ARRIVED_M, LEFT_BEHIND_M = 0.015, 0.06
@@ -80,6 +81,9 @@ class Prospect:
 
     touching: bool
     """Whether its hand is at the cube."""
+
+    claspable: bool = False
+    """Whether it is off the table, with both sides in reach."""
 
 
 class Catching:
@@ -165,7 +169,16 @@ def _watch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
 
 
 def _cheer(catching: Catching, prospect: Prospect, spent: float) -> Doing:
-    return _watch(catching, prospect, spent) if spent > CHEER_S else "cheer"
+    if spent <= CHEER_S:
+        return "cheer"
+    return "clasp" if prospect.claspable else _watch(catching, prospect, spent)
+
+
+def _clasp(catching: Catching, prospect: Prospect, spent: float) -> Doing:
+    if prospect.claspable:
+        return "clasp"
+    catching.caught = prospect.cube  # where it was let go
+    return _try(catching, prospect) if prospect.effort > HARD else "watch"
 
 
 def _touch(catching: Catching, prospect: Prospect, spent: float) -> Doing:
@@ -228,6 +241,7 @@ _NEXT: dict[Doing, Callable[[Catching, Prospect, float], Doing]] = {
     "watch": _watch,
     "touch": _touch,
     "cheer": _cheer,
+    "clasp": _clasp,
     "stretch": _stretch,
     "shrug": _shrug,
     "point": _point,

@@ -74,6 +74,7 @@ def hint_of(facts: Facts) -> str:
 _HINTS = {
     "watch": "Move the cube: can I reach it?",
     "touch": "I have it, nearly!",
+    "clasp": "I hold it with you! Move the cube a little",
     "point": "There it is! I come",
     "come": "Wait, I come to the cube",
     "shade": "So high! Bring the cube down to me",

@@ -35,6 +35,24 @@ def nearest_point_of_cube(table_from_cube: Point, edge: float, point: Point) -> 
     return np.asarray(centre + rotation @ inside)
 
 
+def sides_of_cube(
+    table_from_cube: Point, edge: float, left: Point
+) -> tuple[tuple[Point, Point], tuple[Point, Point]]:
+    """Return the middles of a cube's left and right side, (3,) [m], and the ways out of it there.
+
+    `left` is the direction (3,) that is the left of who looks at it.
+
+    >>> (place, out), _ = sides_of_cube(np.eye(4), 0.06, np.array([-0.9, 0.1, 0.2]))
+    >>> place.tolist(), out.tolist()
+    ([-0.03, 0.0, 0.0], [-1.0, 0.0, 0.0])
+    """
+    along = left @ table_from_cube[:3, :3]
+    number = int(np.abs(along).argmax())
+    out = table_from_cube[:3, number] * np.sign(along[number])
+    centre = table_from_cube[:3, 3]
+    return (centre + edge / 2 * out, out + 0.0), (centre - edge / 2 * out, 0.0 - out)
+
+
 def gap(here: Point, goal: Point, distance: float) -> float:
     """Return how far `here` is from standing at a distance from a goal [m]; 0 if it is nearer."""
     return max(math.dist(here[[0, 2]], goal[[0, 2]]) - distance, 0.0)

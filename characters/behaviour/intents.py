@@ -85,14 +85,18 @@ class ReachIntent:
 
     times: Times
 
-    kind: Literal["reach", "touch", "point", "grasp"] = "reach"
-    """Palm there, fingertips there, index finger along the line to it, or a hand about it."""
+    kind: Literal["reach", "touch", "point", "grasp", "hold"] = "reach"
+    """Palm there, fingertips there, index finger along the line to it, a hand about it, or a flat
+    hand against it."""
 
     hand: Hand = "nearest"
     """Which hand; "nearest": the one that reaches the target with less effort."""
 
     expressivity: GestureExpressivity = NEUTRAL
     """How: openness and power."""
+
+    palm: NDArray[np.float64] | None = None
+    """Where the palm faces, (3,) in the table frame; None as it comes."""
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ from cubeling.registry import Registry
 
 if TYPE_CHECKING:
     from cubeling.characters.ik.reaching.upper_body import UpperBody
+    from cubeling.characters.ik.reaching.whole_body import WholeBody
     from cubeling.characters.synthesis.gestures.library import GestureLibrary
 
 CHARACTER_READERS: "Registry[Callable[[Path], Character]]" = Registry(
@@ -209,6 +210,13 @@ class Character:
         from cubeling.characters.ik.reaching.upper_body import UpperBody
 
         return UpperBody.of(self.skeleton, self.anatomy)
+
+    @cached_property
+    def whole_body(self) -> "WholeBody | None":
+        """All of it that puts hands where they are to be; None if only its upper body does."""
+        from cubeling.characters.ik.reaching.whole_body import WholeBody
+
+        return WholeBody.of(self.upper_body)
 
     @property
     def height(self) -> float:

@@ -13,12 +13,17 @@ from cubeling.characters.skeleton.pose import Array
 EDGE_RAD = 1e-6
 """How far beyond a limit an angle still counts as within: rounding, and no more."""
 
+MAX_MIDDLE_RAD = np.pi / 2
+"""Largest middle angle θ that rotations have [rad]."""
+
 
 @dataclass(frozen=True)
 class AngleLimits:
     """The intervals of the angles of joints.
 
     A local rotation is `before · Rz(ψ) Ry(θ) Rx(φ) · after`, and each of (φ, θ, ψ) has an interval.
+    That of the middle one, θ, is within ±90°: any rotation has such a θ, and beyond it the same
+    rotation would have other angles, so that a limit there is never met.
     """
 
     low: Array
@@ -46,6 +51,16 @@ class AngleLimits:
                 f"{self.high[joint].round(3).tolist()} rad; no lower limit may exceed its upper one"
             )
 
+        steep = (np.abs([self.low[:, 1], self.high[:, 1]]) > MAX_MIDDLE_RAD + EDGE_RAD).any(0)
+        if steep.any():
+            joint = int(steep.argmax())
+            interval = np.degrees([self.low[joint, 1], self.high[joint, 1]]).round(1).tolist()
+            raise CharacterError(
+                f"joint limits: joint {joint} turns from {interval[0]} to {interval[1]}° about its "
+                "middle axis, y; keep that within ±90°, or choose axes whose first or last one is "
+                "that of the wide turn"
+            )
+
     @staticmethod
     def of_angles(low: Array, high: Array) -> "AngleLimits":
         """Return limits about the axes of the joints themselves, (joints, 3) [rad]."""
@@ -55,7 +70,7 @@ class AngleLimits:
     @staticmethod
     def none(joints: int) -> "AngleLimits":
         """Return the limits of joints that turn freely."""
-        wide = np.full((joints, 3), np.pi)
+        wide = np.tile([np.pi, MAX_MIDDLE_RAD, np.pi], (joints, 1))
         return AngleLimits.of_angles(-wide, wide)
 
     @cached_property
@@ -103,8 +118,11 @@ class AngleLimits:
         return np.where(inside[..., None], local, self.rotations(clamped))
 
     def widen(self, angle: float) -> "AngleLimits":
-        """Return limits that are wider by an angle [rad] on each side."""
-        return replace(self, low=self.low - angle, high=self.high + angle)
+        """Return limits that are wider by an angle [rad] on each side, the middle ones to ±90°."""
+        low, high = self.low - angle, self.high + angle
+        low[:, 1] = np.maximum(low[:, 1], -MAX_MIDDLE_RAD)
+        high[:, 1] = np.minimum(high[:, 1], MAX_MIDDLE_RAD)
+        return replace(self, low=low, high=high)
 
 
 def to_euler(q: Array) -> Array:

@@ -6,9 +6,9 @@ oracle
     `scipy.optimize.least_squares` with bounds on the same problems: share solved, time, and summed
     turn of the joints. It starts from where our solver starts, once.
 wrists
-    Paths of both wrists in recorded motions, in the frame of the shoulder, with the performer's own
-    bones: how far the elbow of our pose is from the recorded one, for a chain that follows the
-    wrist, and for one that starts from its pose in the first frame each time.
+    Paths of both wrists in recorded motions, as the chest sees them, with the performer's own
+    bones: how far the elbow is from the recorded one, of the arm that characters reach with, of
+    that with the person's own swivel taken from the first frame, and of a chain of two joints.
 campaign
     With `--solves 1000000` that many solves: share solved, not-a-numbers, joints beyond limits.
 
@@ -20,6 +20,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from rich.console import Console
@@ -35,6 +36,16 @@ from cubeling.app.commands.study.ik_figures import (
     sure_table,
 )
 from cubeling.characters.errors import CharacterError
+from cubeling.characters.ik.reaching import UpperBody
+from cubeling.characters.ik.reaching.arms import (
+    Arm,
+    Effector,
+    bend,
+    effector_of,
+    natural_swivel,
+    swivel_of,
+    to_vector,
+)
 from cubeling.characters.ik.solvers.chains import Chains
 from cubeling.characters.ik.solvers.measures import (
     ReachingProblem,
@@ -42,11 +53,11 @@ from cubeling.characters.ik.solvers.measures import (
     joint_change,
     violations,
 )
-from cubeling.characters.ik.solvers.single import SingleChain
 from cubeling.characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
 from cubeling.characters.retargeting.recording import load_recording
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.skeleton.scalar_quaternions import IDENTITY
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 BLOCK = 5000
@@ -93,51 +104,77 @@ def oracle_table(count: int) -> Table:
     return table
 
 
-def arm_paths() -> Iterator[tuple[str, Array, Array]]:
-    """Yield name, elbows and wrists from the shoulder, (frames, 3) [m], of recorded arms."""
+class RecordedArm(NamedTuple):
+    """The arm of a performer in one recording, seen from the chest at rest."""
+
+    arm: Arm
+
+    wrist: Effector
+
+    elbows: Array
+    """From the shoulder, (frames, 3) [m]."""
+
+    wrists: Array
+    """From the shoulder, (frames, 3) [m]."""
+
+
+def recorded_arms() -> Iterator[RecordedArm]:
+    """Yield the arms of recorded people at 30 frames a second."""
     files = [*sorted((DATA / "bvh").glob("*.bvh")), *sorted((DATA / "cmu-mocap").rglob("*.amc"))]
     for file in files:
         try:
             recording = load_recording(str(file))
         except CharacterError:
             continue
-        joints = recording.anatomy.joints
-        frames = recording.clip.poses.globals(recording.skeleton)
+        skeleton = recording.skeleton
         step = max(round(recording.clip.rate / 30), 1)
-        for side in ("left", "right"):
-            parts = [joints.get(f"{side}{part}") for part in ("UpperArm", "LowerArm", "Hand")]
-            above = -1 if parts[0] is None else recording.skeleton.parents[parts[0]]
-            if None in parts or above < 0:
+        frames = recording.clip.poses.globals(skeleton)[::step]
+        rest = skeleton.rest.globals(skeleton)
+        for arm in UpperBody.of(skeleton, recording.anatomy).arms.values():
+            if arm.carrier < 0:
                 continue
-            shoulder, elbow, wrist = (frames[::step, part, :3, 3] for part in parts)
-            body = frames[::step, above, :3, :3]
-            own = [np.einsum("fji,fj->fi", body, place - shoulder) for place in (elbow, wrist)]
-            yield f"{file.stem} {side}", own[0], own[1]
+            chest = frames[:, arm.carrier, :3, :3] @ rest[arm.carrier, :3, :3].T
+            shoulder, elbow, wrist = (frames[:, joint, :3, 3] for joint in arm.joints[1:])
+            own = [np.einsum("fji,fj->fi", chest, each - shoulder) for each in (elbow, wrist)]
+            yield RecordedArm(arm, effector_of(arm, arm.wrist), *own)
+
+
+def elbow_misses(recorded: RecordedArm) -> dict[str, Array]:
+    """Return how far the elbows of solved arms are from the recorded ones, (frames,) [m]."""
+    upper, lower = recorded.elbows[0], recorded.wrists[0] - recorded.elbows[0]
+    chains = Chains(np.stack([upper, lower]))
+    start = np.tile(rotations.IDENTITY, (len(recorded.wrists), 2, 1))
+    arm, shoulder = recorded.arm, (0.0, 0.0, 0.0)
+    natural, shifted, shift = [], [], None
+    for number, place in enumerate(recorded.wrists):
+        wrist, true = to_vector(place), to_vector(recorded.elbows[number])
+        swivel = natural_swivel(arm, shoulder, wrist, IDENTITY)
+        if shift is None:
+            shift = swivel_of(arm, shoulder, true, wrist, IDENTITY) - swivel
+        for turned, found in ((swivel, natural), (swivel + shift, shifted)):
+            found.append(bend(arm, recorded.wrist, shoulder, wrist, IDENTITY, turned).elbow)
+    chain = solve(chains, recorded.wrists, start).positions[:, 1]
+    ways = {
+        "arm": natural,
+        "arm, with the person's own swivel in the first frame": shifted,
+        f"chain ({DEFAULT}), from the first frame": chain,
+    }
+    return {
+        way: np.linalg.norm(np.asarray(found) - recorded.elbows, axis=-1)
+        for way, found in ways.items()
+    }
 
 
 def wrist_table() -> Table:
     """Return how near the elbows of solved arms are to recorded ones."""
-    table = Table(title="wrist paths of recorded motions: distance of the elbow from the true one")
-    for heading in ("arms", "frames", "wrist, at most", "following: median", "90 %",
-                    "from the first frame: median", "90 %"):  # fmt: skip
-        table.add_column(heading, justify="right")
-    following, restarted, misses, arms = [], [], [0.0], 0
-    for _, elbow, wrist in arm_paths():
-        arms += 1
-        upper, lower = elbow[0], wrist[0] - elbow[0]
-        chains = Chains(np.stack([upper, lower]))
-        one, turns = SingleChain(chains), [(0.0, 0.0, 0.0, 1.0)] * 2
-        for place, true in zip(wrist.tolist(), elbow, strict=True):
-            found = one.solve((place[0], place[1], place[2]), turns)
-            turns = found.rotations
-            misses.append(found.error / one.reach)
-            following.append(float(np.linalg.norm(np.array(found.positions[1]) - true)))
-        start = np.tile(rotations.IDENTITY, (len(wrist), 2, 1))
-        points = solve(chains, wrist, start).positions
-        restarted += np.linalg.norm(points[:, 1] - elbow, axis=-1).tolist()
-    quantiles = [np.quantile(each, (0.5, 0.9)) for each in (following, restarted)] if arms else []
-    cells = [f"{100 * value:.1f} cm" for pair in quantiles for value in pair]
-    table.add_row(f"{arms}", f"{len(following)}", f"{max(misses):.1e} of the arm", *cells)
+    misses = [elbow_misses(recorded) for recorded in recorded_arms()]
+    title = f"wrist paths of {len(misses)} recorded arms: distance of the elbow from the true one"
+    table = Table(title=title)
+    for heading in ("", "median", "90 %"):
+        table.add_column(heading, justify="right" if heading else "left")
+    for way in misses[0] if misses else ():
+        quantiles = np.quantile(np.concatenate([each[way] for each in misses]), (0.5, 0.9))
+        table.add_row(way, *(f"{100 * value:.2f} cm" for value in quantiles))
     return table
 
 

@@ -62,6 +62,13 @@ class FrameContext:
         inside: Array = offset @ placed[:3, :3] / float(placed[1, 1]) ** 2
         return inside
 
+    def direction_in_character(self, direction: Array | None) -> Array | None:
+        """Return a direction (3,) of the table frame in the character frame; None stays None."""
+        if direction is None:
+            return None
+        turned: Array = np.asarray(direction, float) @ self.table_from_character[:3, :3]
+        return turned / float(np.linalg.norm(turned))
+
 
 @dataclass(frozen=True)
 class Found:

@@ -11,11 +11,14 @@ from numpy.typing import NDArray
 from cubeling.characters.behaviour.intents import ReachIntent, Times
 from cubeling.characters.behaviour.realization.planned_values import PlannedValues
 from cubeling.characters.body.capsules import fitted_capsules
+from cubeling.characters.control.layers.behaviour import gaze_of
 from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.reaching import HandTarget, ReachStyle, UpperBody
 from cubeling.characters.ik.reaching.arms import scale_vector
 from cubeling.characters.ik.reaching.surface import BodySurface
+from cubeling.characters.ik.reaching.tree import FIRST_STEPS, STEP_S, Settled
+from cubeling.characters.ik.reaching.whole_body import PlacedBody
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.standing import idle_clips
 from cubeling.characters.motion.curves import ease
@@ -155,11 +158,21 @@ class NearestHand:
 class ReachLayer:
     """Puts hands where the command asks for; it comes after posture and before gaze.
 
-    Hands that change their place or what they do keep no jump: the difference of the joints decays.
+    A body on two legs reaches with all of it, as one tree of springs; another one with torso and
+    arms. Hands that change their place or what they do keep no jump: the difference of the joints
+    decays, and that of the tree.
     """
 
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._body = character.upper_body
+        self._whole = character.whole_body
+        self._settled: Settled | None = None
+        self._shown_tree: NDArray[np.float64] | None = None
+        self._tree_decay: OffsetDecay | None = None
+        self._joints = self._body.joints
+        if self._whole is not None:
+            # The trunk follows the tree, whose own jumps decay.
+            self._joints = np.setdiff1d(self._joints, self._body.kinematics.trunk_joints)
         self._height = character.height
         self._four_legs = character.anatomy.kind == "quadruped"
         self._hands = {side: ReachingHand() for side in self._body.arms}
@@ -239,16 +252,50 @@ class ReachLayer:
     def _move_hands(self, pose: Pose, context: FrameContext) -> Pose:
         hands = {side: hand for side, hand in self._hands.items() if hand.weight > 0.0}
         if not hands and self._decay is None:
-            self._shown = None
+            self._shown = self._settled = self._shown_tree = self._tree_decay = None
             return pose
         share = context.rest if self._four_legs else 1.0
         targets = {
-            side: HandTarget(hand.place, hand.intent.kind, weight=hand.weight * share)
+            side: HandTarget(
+                hand.place,
+                hand.intent.kind,
+                palm=context.direction_in_character(hand.intent.palm),
+                weight=hand.weight * share,
+            )
             for side, hand in hands.items()
             if hand.intent is not None
         }
-        reached = self._body.reach(pose, **targets, style=self._style(hands, context.elapsed))
-        return self._without_jumps(reached, hands, context.command.timestamp)
+        style = self._style(hands, context.elapsed)
+        now, join = context.command.timestamp, 0.0
+        if self._shown is not None and any(hand.jumped for hand in hands.values()):
+            ready = [h.intent.times.ready for h in hands.values() if h.jumped and h.intent]
+            self._switched, join = now, max(*ready, now + JOIN_S) - now
+        placed = None if self._whole is None else self._whole.place(pose, **targets)
+        if placed is None:
+            reached = self._body.reach(pose, **targets, style=style)
+        else:
+            reached = placed.bring(self._settle(placed, style, context, join), style)
+        return self._without_jumps(reached, join, now)
+
+    def _settle(
+        self, placed: PlacedBody, style: ReachStyle, context: FrameContext, join: float
+    ) -> Settled:
+        """Return its tree at rest; if a hand is asked to jump, it goes on from the one shown."""
+        looked, now = gaze_of(context), context.command.timestamp
+        gaze = context.gaze_target if looked is None else context.in_character(looked.target)
+        aim: Vector | None = None if gaze is None else tuple(gaze.tolist())
+        steps = FIRST_STEPS
+        if self._settled is not None and not join:
+            steps = min(max(round(context.elapsed / STEP_S), 1), FIRST_STEPS)
+        self._settled = placed.settle(style, aim, self._settled, steps)
+        values = np.array(self._settled)
+        if join and self._shown_tree is not None:
+            offset = self._shown_tree - values
+            self._tree_decay = OffsetDecay(offset, np.zeros_like(offset), join)
+        if self._tree_decay is not None:
+            values = values + self._tree_decay.at(now - self._switched)
+        self._shown_tree = values
+        return Settled(*((x, y, z) for x, y, z in values.tolist()))
 
     def _style(self, hands: dict[str, ReachingHand], elapsed: float) -> ReachStyle:
         intents = [hand.intent for hand in hands.values() if hand.intent is not None]
@@ -260,18 +307,17 @@ class ReachLayer:
             self._power = low_pass(self._power, wanted.power, elapsed, lag)
         return ReachStyle(self._openness, self._power)
 
-    def _without_jumps(self, pose: Pose, hands: dict[str, ReachingHand], now: float) -> Pose:
-        """Return a pose that goes on from the one shown before, if a hand is asked to jump."""
-        joints = self._body.joints
-        if self._shown is not None and any(hand.jumped for hand in hands.values()):
+    def _without_jumps(self, pose: Pose, join: float, now: float) -> Pose:
+        """Return a pose that goes on from the one shown before, if a hand is asked to jump.
+
+        `join` is how long it takes to the new place [s]; 0 without a jump.
+        """
+        joints = self._joints
+        if join and self._shown is not None:
             offset = rotations.to_rotation_vector(
                 rotations.multiply(self._shown, rotations.conjugate(pose.rotations[joints]))
             )
-            ready = [h.intent.times.ready for h in hands.values() if h.jumped and h.intent]
-            self._decay = OffsetDecay(
-                offset, np.zeros_like(offset), max(*ready, now + JOIN_S) - now
-            )
-            self._switched = now
+            self._decay = OffsetDecay(offset, np.zeros_like(offset), join)
         if self._decay is not None:
             if now - self._switched >= self._decay.length:
                 self._decay = None

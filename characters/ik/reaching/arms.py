@@ -33,6 +33,14 @@ from cubeling.characters.skeleton.scalar_quaternions import (
 SWIVEL_DEG = (-20.0, 70.0)
 """Swivel of the elbow from the vertical plane outward, closed and open [degrees]."""
 
+NATURAL_SWIVEL_DEG: Vector = (16.0, 31.0, 8.0)
+"""Swivel of an elbow that is not asked for [degrees]: at the shoulder, and for each arm length that
+the wrist is higher, and further ahead. Fitted to seven recorded people; a term for the wrist to the
+side is none (`python -m tests.bench.ik`)."""
+
+PAW_SWIVEL_DEG: Vector = (25.0, 0.0, 0.0)
+"""The same of a front leg."""
+
 MAX_ELBOW_BEND_RAD = math.radians(150.0)
 """How far an elbow bends."""
 
@@ -42,8 +50,10 @@ CONE_RAD = math.radians(115.0)
 CONE_AXIS: Vector = (0.45, -0.25, 0.85)
 """That middle for a left hand, in the axes of the chest: outward, down and ahead."""
 
-STRAIGHT_SHARE = 0.9995
-"""Extension of a straight arm ÷ its length: the rest keeps its elbow defined."""
+SOFT_SHARE, STRAIGHT_SHARE = 0.991, 0.9991
+"""Extension of an arm ÷ its length from which on it stretches ever more slowly, and that of a
+straight one: an elbow snaps in the last of it, by 5° a centimetre and more ("soft IK", A. Nicholas,
+2008). What is missing is 2 mm of a person's arm at most."""
 
 _AHEAD: Vector = (-0.15, -0.35, 0.85)
 _ELBOW_AHEAD: Vector = (0.0, -0.9, -0.4)
@@ -91,6 +101,9 @@ class Arm:
 
     rest_turns: tuple[Quaternion, Quaternion]
     """Rotations at rest of the lower arm and the hand."""
+
+    natural_swivel: Vector
+    """As `NATURAL_SWIVEL_DEG` [rad]."""
 
     rigid: bool
     """Whether the fingers do not hang at the hand's joint alone: the wrist stays as at rest."""
@@ -162,6 +175,9 @@ def find_arm(skeleton: Skeleton, anatomy: Anatomy, hand: HandJoints) -> Arm | No
         to_vector(places[lower]),
         to_vector(places[wrist]),
         (to_quaternion(turns[lower]), to_quaternion(turns[wrist])),
+        scale_vector(
+            PAW_SWIVEL_DEG if anatomy.kind == "quadruped" else NATURAL_SWIVEL_DEG, math.pi / 180.0
+        ),
         any(wrist not in chains[joints[0]] for joints in hand.fingers.values()),
     )
 
@@ -228,6 +244,14 @@ def bend(
     return BentArm(upper, turn, multiply(moved, arm.rest_turns[1]), wrist, elbow)
 
 
+def natural_swivel(arm: Arm, shoulder: Vector, place: Vector, chest: Quaternion) -> float:
+    """Return the swivel of the elbow of a hand at a place [rad], if none is asked for."""
+    size = 1.0 / (arm.upper + arm.fore)
+    _, up, ahead = rotate(conjugate(chest), scale_vector(subtract(place, shoulder), size))
+    still, by_up, by_ahead = arm.natural_swivel
+    return still + by_up * min(max(up, -1.0), 1.0) + by_ahead * min(max(ahead, -1.0), 1.0)
+
+
 def bend_to_wrist(
     arm: Arm, wrist: Effector, shoulder: Vector, bent: BentArm, chest: Quaternion, swivel: float
 ) -> BentArm:
@@ -272,7 +296,10 @@ def _aim(aim: Vector, arm: Arm, fore: float, chest: Quaternion) -> tuple[Vector,
         (x, y, z), distance = cone_axis(chest, arm.sign), 1.0
     upper, bent = arm.upper, math.cos(MAX_ELBOW_BEND_RAD)
     nearest = math.sqrt(upper * upper + fore * fore + 2.0 * upper * fore * bent)
-    taken = min(max(distance, nearest), STRAIGHT_SHARE * (upper + fore))
+    taken, full = max(distance, nearest), upper + fore
+    if taken > SOFT_SHARE * full:
+        room = (STRAIGHT_SHARE - SOFT_SHARE) * full
+        taken = SOFT_SHARE * full + room * (1.0 - math.exp((SOFT_SHARE * full - taken) / room))
     return (x / distance, y / distance, z / distance), taken
 
 

@@ -12,6 +12,7 @@ from cubeling.characters.ik.reaching.arms import (
     bend_to_wrist,
     effector_of,
     from_axes,
+    natural_swivel,
     scale_vector,
     swivel_of,
     to_vector,
@@ -54,9 +55,6 @@ MAX_SHOULDER_RAD = math.radians(25.0)
 SHOULDER_DROP = 0.25
 """Part of its way down that it follows a hand that goes down."""
 
-
-NEUTRAL_SWIVEL = math.radians(sum(SWIVEL_DEG) / 2.0)
-"""Swivel of the elbow for which the wrist is placed: openness changes the elbow alone [rad]."""
 
 AT_PLACE = 1e-6
 """Distance from its place at which a wrist is there, in lengths of the forearm: it is rounded."""
@@ -122,7 +120,7 @@ def point_finger(hand: HandOnItsWay, shoulder: Vector, chest: Quaternion) -> Ben
     far = length(aim)
     scale = min(1.0, POINT_EXTENSION * (arm.upper + effector.fore) / max(far, 1e-9))
     tip = add(shoulder, (aim[0] * scale, aim[1] * scale, aim[2] * scale))
-    bent = bend(arm, effector, shoulder, tip, chest, NEUTRAL_SWIVEL)
+    bent = bend(arm, effector, shoulder, tip, chest, natural_swivel(arm, shoulder, tip, chest))
     turn, back = bent.hand, conjugate(arm.rest_turns[1])
     if effector.finger is None:
         return bent
@@ -143,10 +141,11 @@ def orient_hand(
     """
     arm, offset = hand.arm, hand.effector.offset
     back = conjugate(arm.rest_turns[1])
-    natural = bend(arm, hand.effector, shoulder, hand.place, chest, NEUTRAL_SWIVEL)
+    swivel = natural_swivel(arm, shoulder, hand.place, chest)
+    natural = bend(arm, hand.effector, shoulder, hand.place, chest, swivel)
     turn = _facing(hand, natural.hand)
     place = subtract(hand.place, rotate(multiply(turn, back), offset))
-    bent = bend(arm, wrist, shoulder, place, chest, NEUTRAL_SWIVEL)
+    bent = bend(arm, wrist, shoulder, place, chest, swivel)
     wanted = multiply(turn, conjugate(bent.hand))
     allowed = _limit_turn(arm, bent, wanted)
     short = length(subtract(bent.wrist, place))
@@ -157,7 +156,7 @@ def orient_hand(
     from_rest = multiply(bent.lower, conjugate(arm.rest_turns[0]))
     moved = rotate(conjugate(from_rest), rotate(multiply(turn, back), offset))
     again = effector_of(arm, add(arm.wrist, moved))
-    held = bend(arm, again, shoulder, hand.place, chest, NEUTRAL_SWIVEL)
+    held = bend(arm, again, shoulder, hand.place, chest, swivel)
     follows = multiply(held.lower, conjugate(bent.lower))
     return held._replace(hand=multiply(follows, turn))
 

@@ -1,19 +1,22 @@
-"""Where the joints of an upper body are in a pose: the forward kinematics of trunk and arms.
+"""Where the joints of a body are in a pose: the forward kinematics of trunk, arms, legs and neck.
 
-The joints have numbers of their own: ancestors come first, and forearms and hands last, so that
-they can be left out. The frames are lists: for so few joints these are faster than arrays.
+The joints have numbers of their own: ancestors come first, then forearms and hands, then legs and
+neck, so that the last can be left out. The frames are lists: for so few joints these are faster
+than arrays.
 """
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.ik.reaching.arms import Arm, to_quaternion, turns_of
+from cubeling.characters.ik.reaching.stance import Stance
 from cubeling.characters.ik.reaching.torso import FOUR_LEGS, PlacedTorso
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.joint_chains import chains_to_root
+from cubeling.characters.skeleton.natural_limits import natural_limits
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
@@ -24,9 +27,12 @@ from cubeling.characters.skeleton.scalar_quaternions import (
     multiply,
 )
 
+Extent = Literal["upper", "arms", "all"]
+"""Trunk and upper arms, with forearms and hands, or with legs and neck as well."""
+
 
 class Frames(NamedTuple):
-    """Global frames of the joints of an upper body and their ancestors, in one pose."""
+    """Global frames of the joints of a body and their ancestors, in one pose."""
 
     turns: list[Quaternion]
     """`character_from_joint` rotations."""
@@ -43,18 +49,30 @@ class UpperBodyKinematics:
         roots = skeleton.with_ancestors([*trunk, *(arm.joints[1] for arm in arms.values())])
         ends = skeleton.with_ancestors(arm.joints[3] for arm in arms.values())
         order = [*roots, *(joint for joint in ends if joint not in roots)]
+        self._counts = {"upper": len(roots), "arms": len(order)}
+        self.stance = Stance.of(skeleton, anatomy)
+        """Its pelvis, legs and neck."""
+        below = skeleton.with_ancestors(self.stance.joints)
+        order += [joint for joint in below if joint not in order]
+        self._counts["all"] = len(order)
         self._order = np.array(order, np.intp)
         number = {joint: place for place, joint in enumerate(order)} | {-1: -1}
         self.number: Mapping[int, int] = number
         """Numbers of the skeleton's joints; −1 of none, which is −1 too."""
         self.parents = [number[skeleton.parents[joint]] for joint in order]
         """Number of each joint's parent; −1 of a root."""
-        self._roots = len(roots)
         rest = skeleton.rest.globals(skeleton)
+        self.height = float(np.ptp(rest[:, 1, 3]))
+        """From the lowest joint at rest to the highest one [m]."""
         self._rest = [to_quaternion(turn) for turn in turns_of(rest[order, :3, :3])]
         self._sizes = _scales_above(rest, self._order, skeleton)
         self.trunk_joints = np.array(trunk, np.intp)
         """The skeleton's joints that bend the trunk, from the lowest one on."""
+        limits = natural_limits(skeleton, anatomy)[trunk]
+        # Of (twist, side, bend), as bow, turn and tilt.
+        low, high = (each.sum(0)[[2, 0, 1]].tolist() for each in (limits.low, limits.high))
+        self.spine_ranges: list[tuple[float, float]] = list(zip(low, high, strict=True))
+        """How far they bow, turn and tilt together, by their natural limits [rad]."""
         self._trunk = [number[joint] for joint in trunk]
         self._pelvis = self.parents[self._trunk[0]] if self._trunk else -1
         self._first = [number[arm.joints[arm.joints[0] < 0]] for arm in arms.values()]
@@ -62,13 +80,18 @@ class UpperBodyKinematics:
         self._chest = self._trunk[-1] if self._trunk else (carriers[0] if carriers else -1)
         self._limits = FOUR_LEGS if anatomy.kind == "quadruped" else 1.0
 
-    def frames(self, pose: Pose, *, whole_arms: bool = False) -> Frames:
-        """Return the frames of trunk and upper arms, or of the whole arms."""
-        order = self._order if whole_arms else self._order[: self._roots]
+    def frames(self, pose: Pose, extent: Extent = "upper") -> Frames:
+        """Return the frames of trunk and upper arms, with the whole arms, or all."""
+        count = self._counts[extent]
+        order = self._order[:count]
         turns: list[Quaternion] = pose.rotations[order].tolist()
-        places: list[Vector] = (pose.translations[order] * self._sizes[: len(order)]).tolist()
-        make_global(turns, places, self.parents[: len(order)])
+        places: list[Vector] = (pose.translations[order] * self._sizes[:count]).tolist()
+        make_global(turns, places, self.parents[:count])
         return Frames(turns, places)
+
+    def size_above(self, number: int) -> float:
+        """Return the scale at rest of what carries a joint, by its number here."""
+        return float(self._sizes[number, 0])
 
     def torso(self, frames: Frames) -> PlacedTorso:
         """Return the torso of a body with arms, as it is in a pose."""

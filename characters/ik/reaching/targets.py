@@ -6,13 +6,14 @@ from typing import Literal
 
 from cubeling.characters.skeleton.pose import Array
 
-ReachKind = Literal["reach", "touch", "point", "grasp"]
+ReachKind = Literal["reach", "touch", "point", "grasp", "hold"]
 
 SHAPE_OF_KIND: dict[ReachKind, str] = {
     "reach": "relaxed",
     "touch": "flat",
     "point": "point",
     "grasp": "grasp",
+    "hold": "flat",
 }
 """The shape of a hand that does not ask for another one."""
 
@@ -25,7 +26,8 @@ class HandTarget:
     """Where, (3,) [m]."""
 
     kind: ReachKind = "reach"
-    """The palm or the fingertips are there, or the index finger points there."""
+    """The palm ("reach", "grasp", "hold") or the fingertips are there, or the index finger points
+    there."""
 
     palm: Sequence[float] | Array | None = None
     """Where the palm faces, (3,); None as it comes."""

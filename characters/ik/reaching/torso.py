@@ -129,7 +129,8 @@ def turn_torso(
 ) -> TorsoTurn:
     """Return what a torso does so that all arms get where they are to be, if they can."""
     if not torso.places:
-        return TorsoTurn((0.0, 0.0, 0.0), _beyond(torso, reaching, (0.0, 0.0, 0.0), power))
+        missing = shortfall(torso, reaching, (0.0, 0.0, 0.0))
+        return TorsoTurn((0.0, 0.0, 0.0), 1.0 + missing if missing else 0.0)
     turn, lean = _directions(torso, reaching)
     effort, share = _effort(torso, reaching[0], turn, lean)
     for each in reaching[1:]:
@@ -141,7 +142,7 @@ def turn_torso(
     open_turn = (1.0 - share) ** 2 * OPEN_TURN * openness
     turned = add(_turn_partly(turn, lean, share), scale_vector(turn, open_turn))
     if effort >= 1.0:
-        effort = max(effort, _beyond(torso, reaching, turned, power))
+        effort = max(effort, 1.0 + shortfall(torso, reaching, turned))
     return TorsoTurn(turned, effort)
 
 
@@ -151,6 +152,22 @@ def follow_torso(torso: PlacedTorso, target: Vector, sign: float) -> Vector:
     turn = _turn(azimuth, sign, torso.limits)
     away = (abs(azimuth - sign * HOME_RAD) - _FOLLOWING_RAD) / math.pi
     return rotate(torso.facing, (0.0, turn * min(max(2.0 * away, 0.0), 1.0), 0.0))
+
+
+def shortfall(torso: PlacedTorso, reaching: Sequence[Reaching], turned: Vector) -> float:
+    """Return what arms lack to their places after a turn of the torso, in lengths of the arm.
+
+    That of the worst arm; 0 where all are there.
+    """
+    step, chest, worst = torso.step(turned), torso.chest_after(turned), 0.0
+    for each in reaching:
+        shoulder, full = torso.carry(step, each.shoulder), each.arm.upper + each.fore
+        aim = subtract(each.target, shoulder)
+        x, y, z = clamped_aim(aim, chest, each.arm.sign)
+        size = max(length((x, y, z)), 1e-9)
+        taken = min(size, full) / size
+        worst = max(worst, length(subtract(aim, (x * taken, y * taken, z * taken))) / full)
+    return worst
 
 
 def _directions(torso: PlacedTorso, reaching: Sequence[Reaching]) -> tuple[Vector, Vector]:
@@ -265,18 +282,3 @@ def _turned_away(torso: PlacedTorso, each: Reaching, step: Quaternion) -> bool:
             axis = rotate(step, axis)
     aim = subtract(each.target, shoulder)
     return dot(axis, aim) < math.cos(CONE_RAD) * length(aim)
-
-
-def _beyond(
-    torso: PlacedTorso, reaching: Sequence[Reaching], turned: Vector, power: float
-) -> float:
-    """Return the effort for places that are not reached: 1, and by what arms are too short."""
-    step, chest, worst = torso.step(turned), torso.chest_after(turned), 0.0
-    for each in reaching:
-        shoulder, full = torso.carry(step, each.shoulder), each.arm.upper + each.fore
-        aim = subtract(each.target, shoulder)
-        x, y, z = clamped_aim(aim, chest, each.arm.sign)
-        size = max(length((x, y, z)), 1e-9)
-        taken = min(size, full) / size
-        worst = max(worst, length(subtract(aim, (x * taken, y * taken, z * taken))) / full)
-    return 1.0 + worst if worst > 0.0 else 0.0

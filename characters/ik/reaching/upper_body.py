@@ -21,12 +21,12 @@ from cubeling.characters.ik.reaching.arms import (
     bend_to_wrist,
     effector_of,
     find_arm,
+    natural_swivel,
     scale_vector,
     swivel_of,
     to_vector,
 )
 from cubeling.characters.ik.reaching.bending import (
-    NEUTRAL_SWIVEL,
     Bearer,
     HandOnItsWay,
     open_elbow,
@@ -104,7 +104,7 @@ class UpperBody:
             for kind in SHAPE_OF_KIND
         }
         self._wrists = {side: effector_of(arm, arm.wrist) for side, arm in self.arms.items()}
-        self._kinematics = UpperBodyKinematics(skeleton, anatomy, self.arms)
+        self.kinematics = UpperBodyKinematics(skeleton, anatomy, self.arms)
         self._written = {
             side: np.array([*arm.joints[1:], *(j for j in arm.joints[:1] if j >= 0)], np.intp)
             for side, arm in self.arms.items()
@@ -113,7 +113,7 @@ class UpperBody:
     @cached_property
     def joints(self) -> NDArray[np.intp]:
         """All joints that it turns: torso, arms and fingers."""
-        moved = [*self._kinematics.trunk_joints]
+        moved = [*self.kinematics.trunk_joints]
         for arm in self.arms.values():
             moved += [joint for joint in arm.joints if joint >= 0]
             moved += [joint for finger in arm.hand.fingers.values() for joint in finger]
@@ -151,25 +151,18 @@ class UpperBody:
         if not wanted:
             return ReachedPose(pose, 0.0)
         holds = self._four_legs and len(wanted) < len(self.arms)
-        frames = self._kinematics.frames(pose, whole_arms=holds)
-        torso = self._kinematics.torso(frames)
-        hands = [self._start(frames, arm, target, style) for arm, target in wanted]
-        swivelled = style.openness != NEUTRAL_REACH.openness
-        neutral = ReachStyle(power=style.power) if swivelled else style
+        frames = self.kinematics.frames(pose, "arms" if holds else "upper")
+        torso = self.kinematics.torso(frames)
+        hands = [self.start_hand(frames, arm, target, style) for arm, target in wanted]
+        neutral = ReachStyle(power=style.power)
         turned, effort = self._torso_turn(torso, hands, neutral)
-        bearers = [_bearer(torso, hand, turned) for hand in hands]
-        bent = [self._bend(*each) for each in zip(hands, bearers, strict=True)]
-        if swivelled:
-            turned, _ = self._torso_turn(torso, hands, style)
-            for place, (hand, arm, before) in enumerate(zip(hands, bent, bearers, strict=True)):
-                wrist, after = self._wrists[hand.arm.hand.side], _bearer(torso, hand, turned)
-                bent[place] = open_elbow(hand.arm, wrist, arm, before, after, style.openness)
-        local, whole = pose.rotations.copy(), from_rotation_vector(turned)
-        self._kinematics.turn_trunk(local, frames, torso.step(turned))
-        for hand, arm in zip(hands, bent, strict=True):
-            self._write(local, frames, hand, arm, whole)
+        opened = turned
+        if style.openness != NEUTRAL_REACH.openness:
+            opened, _ = self._torso_turn(torso, hands, style)
+        local = pose.rotations.copy()
+        self.bring(local, frames, torso, hands, (turned, opened), style)
         if holds:
-            self._hold(local, frames, torso, hands[0], turned)
+            self._hold(local, frames, torso, hands[0], opened)
         return ReachedPose(Pose(pose.translations, local, pose.scales, pose.morphs), effort)
 
     def effort(self, pose: Pose, place: Sequence[float] | Array) -> float:
@@ -179,12 +172,12 @@ class UpperBody:
         """
         if not self.arms:
             return math.inf
-        frames = self._kinematics.frames(pose)
-        torso = self._kinematics.torso(frames)
+        frames = self.kinematics.frames(pose)
+        torso = self.kinematics.torso(frames)
         target = HandTarget(place)
         return min(
             self._torso_turn(
-                torso, [self._start(frames, arm, target, NEUTRAL_REACH)], NEUTRAL_REACH
+                torso, [self.start_hand(frames, arm, target, NEUTRAL_REACH)], NEUTRAL_REACH
             )[1]
             for arm in self.arms.values()
         )
@@ -194,27 +187,52 @@ class UpperBody:
         arm = self.arms.get(side)
         if arm is None:
             return None
-        frames = self._kinematics.frames(pose, whole_arms=True)
-        hand = self._kinematics.number[arm.joints[3]]
+        frames = self.kinematics.frames(pose, "arms")
+        hand = self.kinematics.number[arm.joints[3]]
         moved = multiply(frames.turns[hand], conjugate(arm.rest_turns[1]))
         offset = self._effectors[side, "reach"].offset
         return np.array(add(frames.places[hand], rotate(moved, offset)))
 
-    def _start(
-        self, frames: Frames, arm: Arm, target: HandTarget, style: ReachStyle
+    def bring(
+        self,
+        local: Array,
+        frames: Frames,
+        torso: PlacedTorso,
+        hands: Sequence[HandOnItsWay],
+        turns: tuple[Vector, Vector],
+        style: ReachStyle,
+    ) -> None:
+        """Write a turned trunk and the arms on it that bring hands to their places.
+
+        `turns` are those of the torso without openness, for which wrists are placed, and with it.
+        """
+        neutral, turned = turns
+        bearers = [_bearer(torso, hand, neutral) for hand in hands]
+        bent = [self._bend(*each) for each in zip(hands, bearers, strict=True)]
+        if style.openness != NEUTRAL_REACH.openness:
+            for place, (hand, arm, before) in enumerate(zip(hands, bent, bearers, strict=True)):
+                wrist, after = self._wrists[hand.arm.hand.side], _bearer(torso, hand, turned)
+                bent[place] = open_elbow(hand.arm, wrist, arm, before, after, style.openness)
+        self.kinematics.turn_trunk(local, frames, torso.step(turned))
+        whole = from_rotation_vector(turned)
+        for hand, arm in zip(hands, bent, strict=True):
+            self._write(local, frames, hand, arm, whole)
+
+    def start_hand(
+        self, frames: Frames, arm: Arm, target: HandTarget, style: ReachStyle | None
     ) -> HandOnItsWay:
-        """Return an arm with its place, and its collarbone as it follows."""
+        """Return an arm with its place, and its collarbone as it follows by a style, if at all."""
         x, y, z = to_vector(target.place)
         effector = self._effectors[arm.hand.side, target.kind]
         full = arm.upper + effector.fore
-        shoulder = frames.places[self._kinematics.number[arm.joints[1]]]
+        shoulder = frames.places[self.kinematics.number[arm.joints[1]]]
         aim = subtract((x, y, z), shoulder)
         if max(map(abs, aim)) > _FAR * full:  # squares of what is very far are infinite
             scale = _FAR * full / max(map(abs, aim))
             x, y, z = add(shoulder, scale_vector(aim, scale))
         swung = IDENTITY
-        if arm.joints[0] >= 0:
-            base = frames.places[self._kinematics.number[arm.joints[0]]]
+        if arm.joints[0] >= 0 and style is not None:
+            base = frames.places[self.kinematics.number[arm.joints[0]]]
             swung = passive_shoulder(base, shoulder, (x, y, z), full, style.power)
             shoulder = add(base, rotate(swung, subtract(shoulder, base)))
         return HandOnItsWay(arm, target, effector, (x, y, z), shoulder, swung)
@@ -241,9 +259,8 @@ class UpperBody:
         if target.kind == "point":
             return twist_forearm(arm, point_finger(hand, *bearer))
         if target.palm is None and target.fingers is None:
-            return bend(
-                arm, hand.effector, bearer.shoulder, hand.place, bearer.chest, NEUTRAL_SWIVEL
-            )
+            swivel = natural_swivel(arm, bearer.shoulder, hand.place, bearer.chest)
+            return bend(arm, hand.effector, bearer.shoulder, hand.place, bearer.chest, swivel)
         return twist_forearm(arm, orient_hand(hand, self._wrists[arm.hand.side], *bearer))
 
     def _write(
@@ -256,15 +273,15 @@ class UpperBody:
     ) -> None:
         """Write the local rotations of an arm and its fingers."""
         arm, weight = hand.arm, hand.target.weight
-        collar, upper = (self._kinematics.number.get(joint, -1) for joint in arm.joints[:2])
-        above = multiply(hand.swung, frames.turns[self._kinematics.parents[upper]])
+        collar, upper = (self.kinematics.number.get(joint, -1) for joint in arm.joints[:2])
+        above = multiply(hand.swung, frames.turns[self.kinematics.parents[upper]])
         rows = [
             multiply(conjugate(multiply(whole, above)), bent.upper),
             multiply(conjugate(multiply(bent.upper, arm.between_bones)), bent.lower),
             multiply(conjugate(multiply(bent.lower, arm.between_fore)), bent.hand),
         ]
         if collar >= 0:
-            above = frames.turns[self._kinematics.parents[collar]]
+            above = frames.turns[self.kinematics.parents[collar]]
             rows.append(multiply(conjugate(above), multiply(hand.swung, frames.turns[collar])))
         _blend(local, self._written[arm.hand.side], rows, weight)
         if arm.hand.fingers:
@@ -283,7 +300,7 @@ class UpperBody:
         """Keep the other front paw where it is while the torso moves."""
         (arm,) = (arm for arm in self.arms.values() if arm is not reaching.arm)
         turns, places = frames
-        _, upper, lower, paw = (self._kinematics.number.get(joint, -1) for joint in arm.joints)
+        _, upper, lower, paw = (self.kinematics.number.get(joint, -1) for joint in arm.joints)
         shoulder = torso.carry(torso.step(turned), places[upper])
         wrist = self._wrists[arm.hand.side]
         now = BentArm(turns[upper], turns[lower], turns[paw], places[paw], places[lower])
@@ -297,8 +314,8 @@ class UpperBody:
         """Return what of a hand is brought to a place."""
         hand = arm.hand
         pronation = 0.0 if self._four_legs else PRONATION_RAD
-        if self._four_legs or kind in ("reach", "grasp"):
-            held = 0.0 if kind == "grasp" else pronation
+        if self._four_legs or kind in ("reach", "grasp", "hold"):
+            held = pronation if kind == "reach" else 0.0
             return effector_of(arm, to_vector(hand.palm), pronation=held)
         tips = self.shapes.posture(hand.side, SHAPE_OF_KIND[kind]).tips
         finger = next((name for name in _FINGER_OF_KIND[kind] if name in tips), None)

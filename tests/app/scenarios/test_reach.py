@@ -20,6 +20,7 @@ from cubeling.app.scenarios.reach_intents import (
     gesture_times,
     leave,
 )
+from cubeling.app.scenarios.reach_places import nearest_point_of_cube, sides_of_cube
 from cubeling.characters import Animator, Character
 from cubeling.characters.behaviour.intents import ReachIntent, Times
 from cubeling.characters.rendering.toys import TOYS, toy
@@ -68,24 +69,52 @@ def play(hand):
 
 
 def test_it_stretches_in_vain_gives_up_walks_there_and_touches_the_cube(play):
-    titles = play.on(8.0)
+    titles = play.on(8.0, x=0.08)
     order = [titles.index(title) for title in ("stretch", "shrug", "walk", "reach", "cheer")]
     assert order == sorted(order)
     assert play.events[:2] == ["unreachable", "reached"]
 
 
 def test_what_it_cannot_reach_frustrates_it_and_what_it_reaches_delights_it(play):
-    play.on(2.0)
+    play.on(2.0, x=0.08)
     before = play.outcomes[-1].emotion.emotion.valence
-    play.on(1.0)
+    play.on(1.0, x=0.08)
     frustrated = play.outcomes[-1].emotion.emotion.valence
     assert frustrated < before - 0.1
-    play.on(4.5)
+    play.on(4.5, x=0.08)
     assert play.outcomes[-1].emotion.emotion.valence > frustrated + 0.1
 
 
+def test_it_bends_down_for_a_cube_that_the_torso_alone_does_not_reach(play):
+    """The cube is touched from where it stands, which needs hips and knees."""
+    play.on(2.5, x=-0.03)
+    touched = nearest_point_of_cube(np.eye(4), 0.06, play.body.chest - [-0.03, 0.03, 0.02])
+    seen = (touched + [-0.03, 0.03, 0.02] - play.body.place) / play.animator.scale
+    turn = play.body.posed.table_from_character[:3, :3] / play.animator.scale
+    rest = play.character.skeleton.rest
+    assert play.character.upper_body.effort(rest, seen @ turn) > 1.3
+    assert play.events[:1] == ["reached"]
+    start = np.array([play.reach.start.x, 0.0, play.reach.start.z])
+    assert np.linalg.norm(play.body.place - start) < 0.02
+
+
+def test_it_holds_a_cube_in_the_air_with_both_hands_and_moves_along(play):
+    play.on(5.0, x=-0.05, y=0.085, resting=False)
+    assert play.outcomes[-1].icon == "take"
+    for step in range(30):
+        y = 0.085 + 0.015 * np.sin(step / 8)
+        play.on(1 / 30, x=-0.05, y=y, resting=False)
+        cube = np.eye(4)
+        cube[:3, 3] = -0.05, y, 0.02
+        left = play.body.posed.table_from_character[:3, 0]
+        sides = sides_of_cube(cube, CubeModel.load("locomotion").edge, left)
+        for side, (place, _) in zip(("left", "right"), sides, strict=True):
+            assert np.linalg.norm(play.body.palm(side) - place) < 0.004
+    assert play.on(1.0, x=-0.05, y=0.03)[-1] != "take"
+
+
 def test_it_brings_a_thing_in_its_hand_to_where_the_cube_rests(play):
-    play.on(8.0)
+    play.on(3.0)
     names: list[str] = []
     palms = []
     while "given" not in play.events:

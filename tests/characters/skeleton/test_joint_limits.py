@@ -36,6 +36,17 @@ def test_limits_that_are_none_are_refused() -> None:
         AngleLimits.of_angles(np.zeros((2, 3)), np.zeros((3, 3)))
 
 
+def test_a_middle_axis_beyond_90_degrees_is_refused() -> None:
+    """Such a limit would never be met: the middle angle of a rotation is within ±90°."""
+    low, high = np.full((3, 3), -0.5), np.full((3, 3), 0.5)
+    high[2, 1] = np.radians(100.0)
+    with pytest.raises(CharacterError, match=r"joint 2 turns from -28\.6 to 100\.0° about its mid"):
+        AngleLimits.of_angles(low, high)
+    high[2, 1], high[2, 0] = np.radians(90.0), np.radians(170.0)
+    assert AngleLimits.of_angles(low, high).widen(0.2).high[2, 1] == np.pi / 2
+    assert AngleLimits.none(1).excess(rotations.about("y", [2.0])).max() == 0.0
+
+
 @pytest.mark.parametrize("name", BUNDLED)
 def test_bundled_clips_stay_within_natural_limits(name: str) -> None:
     character = Character.load(name)
@@ -92,4 +103,5 @@ def test_joints_of_no_known_part_turn_freely() -> None:
     human = Character.load("human")
     limits = natural_limits(human.skeleton, human.anatomy)
     eye = human.anatomy.joints["leftEye"]
-    assert np.allclose(limits.high[eye], np.pi)
+    wild = rotations.normalize(np.random.default_rng(1).normal(size=(50, len(limits), 4)))
+    assert limits.excess(wild)[:, eye].max() <= EDGE_RAD

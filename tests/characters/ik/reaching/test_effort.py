@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from cubeling.characters.ik.reaching import UpperBody, reach_effort
+from cubeling.characters.ik.reaching.whole_body import WholeBody
 from cubeling.characters.skeleton.pose import Skeleton
 from tests.characters.ik.reaching.bodies import bundled, stick
 
@@ -17,12 +18,13 @@ class Reacher:
 
     skeleton: Skeleton
     upper_body: UpperBody
+    whole_body: WholeBody | None = None
 
 
 def reacher(name: str) -> Reacher:
     """Return a bundled character."""
     body = bundled(name)
-    return Reacher(body.skeleton, body.upper)
+    return Reacher(body.skeleton, body.upper, WholeBody.of(body.upper))
 
 
 @pytest.mark.parametrize("name", ["human", "vleo", "robot"])

@@ -173,7 +173,8 @@ def test_the_elbow_swivels_from_20_degrees_inward_to_70_degrees_outward() -> Non
         side -= along * (along @ side)
         down = np.array([0.0, -1.0, 0.0]) + along * along[1]
         angles.append(math.degrees(math.atan2(np.cross(down, side) @ along, down @ side)))
-    assert angles == pytest.approx([-20.0, 25.0, 70.0], abs=5.0)
+    # Between them is what people do with a hand ahead of the shoulder, at 0.6 of the arm.
+    assert angles == pytest.approx([-20.0, 18.0, 70.0], abs=5.0)
     assert angles[::2] == pytest.approx([-20.0, 70.0], abs=0.5)
 
 

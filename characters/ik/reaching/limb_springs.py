@@ -1,0 +1,89 @@
+"""Springs of limbs: how an arm pulls that is stretched, and how a leg holds what stands on it."""
+
+import math
+from typing import NamedTuple
+
+from cubeling.characters.ik.reaching.arms import Arm
+from cubeling.characters.skeleton.scalar_quaternions import Vector, dot
+
+ELBOW_SPRING, EASY_FLEXION_RAD = 2.0, math.radians(61.0)
+"""How stiff an elbow is that is bent less than it is at ease [rad]."""
+
+KNEE_SPRING, LEG_SPRING = 1.2, 4.0
+"""How stiff a knee is, and a leg whose length changes."""
+
+STRAIGHT_RAD = math.radians(16.0)
+"""An elbow bent less than this is as good as straight: its spring goes on linearly, so that a place
+out of reach pulls with a finite force."""
+
+SPARE, MAX_SHORT = 0.015, 0.06
+"""Length of an arm that is kept in reserve, and what it may lack at most before it pulls no harder,
+in arm lengths."""
+
+
+class Pull(NamedTuple):
+    """A hand that pulls."""
+
+    arm: Arm
+
+    fore: float
+    """From its elbow to what reaches [m]."""
+
+    base: Vector
+    """Where its collarbone begins; its shoulder if it has none [m]."""
+
+    shoulder: Vector
+    """Where its upper arm begins [m]."""
+
+    place: Vector
+    """Where it pulls to [m]."""
+
+    weight: float
+    """0 not at all … 1."""
+
+
+def straining(pull: Pull, far: float, power: float) -> tuple[float, float]:
+    """Return how far an elbow is from its ease, and how that changes with the distance [1/m]."""
+    upper, fore = pull.arm.upper, pull.fore
+    ease = EASY_FLEXION_RAD * (1.0 + 0.3 * power)
+    near = _span(upper, fore, ease)
+    far += SPARE * (upper + fore)
+    if far <= near:
+        return 0.0, 0.0
+    far = near + pull.weight * (far - near)
+    straight = _span(upper, fore, STRAIGHT_RAD)
+    reached = min(far, straight)
+    cosine = (reached * reached - upper * upper - fore * fore) / (2.0 * upper * fore)
+    flexion = math.acos(min(max(cosine, -1.0), 1.0))
+    slope = reached / (upper * fore * math.sin(flexion))
+    most = MAX_SHORT * (upper + fore)
+    size = ELBOW_SPRING * (1.0 + power) * math.sqrt(most / max(far - reached, most))
+    return size * (ease - flexion + slope * (far - reached)), size * slope * pull.weight
+
+
+def _span(upper: float, fore: float, flexion: float) -> float:
+    """Return how far a limb reaches that is bent by an angle [m]."""
+    return math.sqrt(upper * upper + fore * fore + 2.0 * upper * fore * math.cos(flexion))
+
+
+def standing(extension: float, own: float) -> tuple[float, float]:
+    """Return how far a leg is from its ease, and how that changes with its extension."""
+    bend, held = (math.sqrt(max(1.0 - each, 0.0) + 0.004) for each in (extension, own))
+    # Knee and leg are springs of one length: together they are one.
+    knee = KNEE_SPRING / (2.0 * bend)
+    square = knee * knee + LEG_SPRING * LEG_SPRING
+    force = knee * KNEE_SPRING * (held - bend) + LEG_SPRING * LEG_SPRING * (extension - own)
+    slope = math.sqrt(square)
+    return force / slope, slope
+
+
+def stiffen(
+    stiff: list[float], first: int, lever: Vector, aim: Vector, string: float, own: float = 0.0
+) -> None:
+    """Add what a pull stiffens across its direction: that of a string, and of a pendulum.
+
+    Gauss-Newton leaves it out, and would swing from side to side.
+    """
+    more = string * (own + dot(lever, lever) + max(dot(aim, lever), 0.0))
+    for at in range(first, first + 3):
+        stiff[at] += more

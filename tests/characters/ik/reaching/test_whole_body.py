@@ -1,0 +1,159 @@
+"""Whole bodies that reach as one tree: knees, hips, trunk and head for hands, over planted feet."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from cubeling.characters import Character, Pose
+from cubeling.characters.ik.reaching import HandTarget, ReachStyle
+from cubeling.characters.ik.reaching.tree import FIRST_STEPS, FOOT_AHEAD, UPPER_MASS, UPPER_MIDDLE
+from cubeling.characters.ik.reaching.whole_body import WholeBody
+from cubeling.characters.model.standing import idle_clips
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Array
+from tests.characters.ik.reaching.bodies import PERSON_M, bundled, stick
+
+PLACES = {
+    "low": (0.12, 0.08, 0.25),
+    "far": (0.1, 0.5, 0.45),
+    "crossing": (-0.2, 0.5, 0.25),
+    "behind": (0.25, 0.5, -0.2),
+}
+"""Places in body heights: left, up, ahead."""
+
+FEET = ("leftFoot", "rightFoot")
+
+
+@cache
+def human() -> tuple[Character, WholeBody, Pose]:
+    """Return the bundled human, and how it stands."""
+    character = Character.load("human")
+    assert character.whole_body is not None
+    return character, character.whole_body, idle_clips(character.clips)[0].poses[0]
+
+
+def at(place: tuple[float, float, float] | Array) -> Array:
+    """Return a place in body heights [m]."""
+    return human()[0].height * np.asarray(place, float)
+
+
+def joint(pose: Pose, part: str) -> Array:
+    """Return where a part of the human is, (3,) [m]."""
+    character = human()[0]
+    where: Array = pose.globals(character.skeleton)[character.anatomy.joints[part], :3, 3]
+    return where
+
+
+def person_mm(length: Array) -> float:
+    """Return the length of a vector of the human, scaled to a person [mm]."""
+    return float(np.linalg.norm(length)) / human()[0].height * PERSON_M * 1e3
+
+
+def palm_misses_by(pose: Pose, place: Array, side: str = "left") -> float:
+    """Return how far a palm is from a place, scaled to a person [mm]."""
+    return person_mm(np.asarray(human()[0].upper_body.palm(pose, side)) - place)
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_a_place_that_torso_and_arm_miss_is_reached_with_hips_and_knees(name: str) -> None:
+    character, whole, pose = human()
+    target = HandTarget(at(PLACES[name]))
+    alone = character.upper_body.reach(pose, target)
+    together = whole.reach(pose, target)
+    assert palm_misses_by(together, at(PLACES[name])) < 10.0
+    if name in ("low", "far"):
+        assert palm_misses_by(alone, at(PLACES[name])) > 100.0
+
+
+@pytest.mark.parametrize("name", [*PLACES, "high"])
+def test_feet_stay_as_they_are_and_the_mass_over_them(name: str) -> None:
+    character, whole, pose = human()
+    reached = whole.reach(pose, HandTarget(at(PLACES.get(name, (0.1, 1.3, 0.3)))))
+    before, after = (each.globals(character.skeleton) for each in (pose, reached))
+    feet = [character.anatomy.joints[foot] for foot in FEET]
+    assert np.allclose(before[feet], after[feet], atol=1e-9)
+    hip = joint(reached, "leftUpperLeg") - joint(pose, "leftUpperLeg")
+    top = joint(reached, "neck") - joint(pose, "neck")
+    mass = hip + UPPER_MASS * UPPER_MIDDLE * (top - hip)
+    assert mass[2] < (FOOT_AHEAD + 0.03) * character.height
+
+
+def test_a_near_place_moves_the_arm_only() -> None:
+    character, whole, pose = human()
+    place = at((0.12, 0.6, 0.15))
+    reached = whole.reach(pose, HandTarget(place))
+    turned = rotations.multiply(reached.rotations, rotations.conjugate(pose.rotations))
+    angles = np.degrees(np.linalg.norm(rotations.to_rotation_vector(turned), axis=-1))
+    arm = character.upper_body.arms["left"]
+    fingers = [each for finger in arm.hand.fingers.values() for each in finger]
+    others = np.setdiff1d(np.arange(len(angles)), [*arm.joints, *fingers])
+    assert palm_misses_by(reached, place) < 1.0
+    assert angles[others].max() < 1.0
+
+
+def test_the_tree_rests_where_it_settles_so_that_nothing_trembles() -> None:
+    _, whole, pose = human()
+    random = np.random.default_rng(4)
+    for _ in range(25):
+        place = at(random.uniform((-0.4, 0.05, -0.1), (0.5, 1.2, 0.5)))
+        placed = whole.place(pose, left=HandTarget(place))
+        assert placed is not None
+        settled = placed.settle(steps=5 * FIRST_STEPS)
+        for steps in (1, 2):
+            again = placed.settle(start=settled, steps=steps)
+            assert np.abs(np.subtract(again, settled)).max() < 0.003
+
+
+def test_a_shoulder_follows_the_further_the_harder_its_arm_pulls() -> None:
+    _, whole, pose = human()
+    turns = []
+    for power in (0.0, 0.5, 1.0):
+        placed = whole.place(pose, left=HandTarget(at((0.15, 0.75, 0.3))))
+        assert placed is not None
+        turns.append(float(np.linalg.norm(placed.settle(ReachStyle(power=power)).left)))
+    assert turns[0] < turns[1] < turns[2]
+
+
+@pytest.mark.parametrize("height", [0.15, 0.45, 0.7])
+def test_two_palms_face_the_sides_of_a_box(height: float) -> None:
+    character, whole, pose = human()
+    places = {side: at((sign * 0.15, height, 0.28)) for side, sign in (("left", 1), ("right", -1))}
+    reached = whole.reach(
+        pose,
+        HandTarget(places["left"], "hold", palm=(-1.0, 0.0, 0.0)),
+        HandTarget(places["right"], "hold", palm=(1.0, 0.0, 0.0)),
+    )
+    rest = character.skeleton.rest.globals(character.skeleton)
+    for side, inward in (("left", -1.0), ("right", 1.0)):
+        assert palm_misses_by(reached, places[side], side) < 10.0
+        hand = character.upper_body.arms[side].hand
+        moved = reached.globals(character.skeleton)[hand.joint] @ np.linalg.inv(rest[hand.joint])
+        assert moved[0, :3] @ hand.axes[2] * inward > 0.95
+
+
+def test_the_head_stays_level_while_the_trunk_bows() -> None:
+    _, whole, pose = human()
+    reached = whole.reach(pose, HandTarget(at((0.1, 0.2, 0.35))))
+    character = human()[0]
+    head, chest = (character.anatomy.joints[part] for part in ("head", "chest"))
+    before, after = (each.globals(character.skeleton)[:, :3, :3] for each in (pose, reached))
+    bows = [np.degrees(np.arccos((after[j] @ before[j].T)[1, 1])) for j in (chest, head)]
+    assert bows[0] > 35.0
+    assert bows[1] < 0.5 * bows[0]
+
+
+def test_a_body_without_legs_to_stand_on_keeps_its_pelvis() -> None:
+    body = stick()
+    parts = {**body.anatomy.joints, "head": 2}  # its chest is all that it looks with
+    upper = type(body.upper)(body.skeleton, Anatomy("humanoid", parts))
+    whole = WholeBody.of(upper)
+    assert whole is not None
+    pose = whole.reach(body.rest, HandTarget(np.array([0.3, 1.0, 0.8])))
+    assert np.array_equal(pose.translations, body.rest.translations)
+    assert np.array_equal(pose.rotations[0], body.rest.rotations[0])
+
+
+def test_a_body_on_four_legs_reaches_with_torso_and_front_legs() -> None:
+    assert WholeBody.of(bundled("vleo").upper) is None
