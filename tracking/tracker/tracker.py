@@ -158,7 +158,7 @@ class CubeTracker:
             return self._predict(now, verdict.refused)
         pose, noise = found.camera_from_cube, found.covariance
         by_corners, lens_shifts = self._systematic_error.covariance(
-            pose, found.faces, self._lens.k1_error, found.blur
+            pose, found.faces, self._lens.k1_error, found.blur, found.lone_residual
         )
         if is_uncertain(noise + by_corners):
             return self._predict(now, "unsure")
