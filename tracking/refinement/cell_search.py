@@ -99,7 +99,7 @@ class CellMatch:
 Step = Literal["look", "align", "align coarsely", "weigh", "join", "measure", "flatten", ""]
 """A step of a search; "" after the last one."""
 
-EFFORT = {"align coarsely": 3, "join": 2, "measure": 4}
+EFFORT = {"align coarsely": 3, "join": 2, "measure": 3}
 """How many times as long as the others some steps take."""
 
 
@@ -127,6 +127,9 @@ class CellRun:
 
     markers: DrawnMarkers | None = None
     """What was rendered at the pose where it began."""
+
+    exact: bool = False
+    """As in `CellSearch.begin`."""
 
     alone: bool = False
     """Whether it has looked for other faces than those that were read, and sees none."""
@@ -170,14 +173,23 @@ class CellSearch:
         return run.match
 
     def begin(
-        self, image: Image, start: Array, tone: Floats, read: Collection[str] | None
+        self,
+        image: Image,
+        start: Array,
+        tone: Floats,
+        read: Collection[str] | None,
+        *,
+        exact: bool = False,
     ) -> CellRun:
-        """Begin a `search`, which `advance` carries on until it is done."""
+        """Begin a `search`, which `advance` carries on until it is done.
+
+        `exact` is whether the start rests on the corners of markers, and is not off by a cell.
+        """
         patch = self._footprint.crop(image, start, tone)
         if patch is None:
             return CellRun(None, start, read, "")
         alone = read is None or self._in_view(start) <= set(read)
-        return CellRun(patch, start, read, "align" if alone else "look")
+        return CellRun(patch, start, read, "align" if alone else "look", exact=exact)
 
     def advance(self, run: CellRun) -> CellRun:
         """Take the next step of a search."""
@@ -215,6 +227,8 @@ class CellSearch:
         assert run.patch is not None
         found = self._aligner.align(run.patch, run.start, run.read, markers=run.markers)
         good = found and max(found.correlations.values()) > MIN_LOCKED
+        if not good and run.exact:
+            return replace(run, step="")
         return replace(run, aligned=found, step="weigh" if good else "align coarsely")
 
     def _align_coarsely(self, run: CellRun) -> CellRun:

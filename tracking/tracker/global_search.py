@@ -51,15 +51,15 @@ BUDGET_PICTURES = 2.2
 """What the trials of one call may cost beside the passes that each call begins with, counted in
 pictures that are read: about as many detections by OpenCV."""
 
-SMALL_PICTURE_PX, SMALL_BUDGET_PX = 640 * 480, 9_000_000
-"""Pictures of at most so many pixels have this budget instead [px], ten steps of comparing cells.
+SMALL_PICTURE_PX, SMALL_BUDGET_PX = 640 * 480, 13_000_000
+"""Pictures of at most so many pixels have this budget instead [px]: both leans of a lone face.
 Those take as long as in a large picture: by the other budget a cube that moves through small
 pictures has gone before it is found, and 40 % fewer frames are trusted."""
 
 CELLS_COST_PX, BLUR_COST_PX = 900_000, 4_000_000
-"""What a step of comparing the cells with the image costs, and aligning a blurred image: as much as
-reading so many pixels for partly hidden markers. `make bench-photographs` prints what calls take.
-"""
+"""What a short step of comparing the cells with the image costs, and aligning a blurred image: as
+much as reading so many pixels for partly hidden markers. `make bench-photographs` prints what calls
+take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,7 +249,11 @@ class GlobalDetector:
             trial = self._comparison(ahead, read, mirrored=mirrored)
             return replace(search, half_done=True).try_first([trial])
         search = search.find(found)
-        if search.found and search.found[0].certain and search.found[0].agreed:
+        agreed = search.found and search.found[0].certain and search.found[0].agreed
+        # A lone marker that is not there at one lean is not there at the other.
+        lone = len(first.observations) == 1
+        absent = lone and found and all(each.evidence is None for each in found)
+        if agreed or absent:
             return replace(search, half_done=False)
         if not others and not mirrored:
             others = [(each, None) for each in self._poses.mirror(first, search.found)]
