@@ -1,6 +1,5 @@
 """The pipeline for one frame: from a picture of the cube to a picture of the character."""
 
-import logging
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,7 +12,6 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.attention import Attention
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.choices import REALISM_CHOICES
-from cubeling.app.pipeline.cube_advice import CubeAdvice
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.obstacles import Obstacles, view_of
@@ -28,16 +26,13 @@ from cubeling.app.pipeline.scenario import (
     ScenarioSettings,
     check_actions,
 )
-from cubeling.app.pipeline.scenario_errors import (
-    check_outcome,
-    described_error,
-    scenario_errors,
-)
+from cubeling.app.pipeline.scenario_errors import check_outcome, scenario_errors
 from cubeling.app.pipeline.sight import Sight
 from cubeling.app.pipeline.situation import Situation, table_from_cube
 from cubeling.app.pipeline.spoken_line import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import StepRenderer
+from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.characters import (
     Animator,
     Character,
@@ -49,38 +44,24 @@ from cubeling.characters import (
 )
 from cubeling.characters.rendering import Quality
 from cubeling.characters.speech import Complexion
-from cubeling.tracking import (
-    CubeControls,
-    CubeGestures,
-    CubeModel,
-    CubeState,
-    CubeTracker,
-    Frame,
-    Intrinsics,
-    LensEstimate,
-    TrackingError,
-)
+from cubeling.tracking import CubeControls, CubeGestures, CubeModel, CubeState, Frame, Intrinsics
 from cubeling.tracking.appearance import APPEARANCE_PARTS
 
 if TYPE_CHECKING:
     import moderngl
-
-LOG = logging.getLogger(__name__)
-"""Shows tracebacks with `cubeling --debug`."""
 
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
 
 STATE_NAMES = (
     "scenario",
-    "_tracker",
+    "tracked",
     "_gestures",
     "_animator",
     "_posed",
     "_body",
     "_attention",
     "_obstacles",
-    "_cube_advice",
     "_speaking",
     "_complexion",
     "_window",
@@ -178,9 +159,9 @@ class Playground:
         animator = Animator(character, place=scenario.start, controller=self._controller)
         check_actions(scenario, character.name, animator.actions)
         self.scenario, self.cube, self.character = scenario, cube, character
-        self._tracker = CubeTracker(cube, self.intrinsics)
+        self.tracked = TrackedCube(cube, self.intrinsics, self.known_cubes)
+        """The cube in view, and what it has told of the camera."""
         self._gestures = CubeGestures(cube)
-        self._tracker_error = ""
         self.sight.begin(cube)
         self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
         self._posed: PosedCharacter | None = None
@@ -188,7 +169,6 @@ class Playground:
         self._attention = Attention(self._look, cube.edge)
         self._obstacles = Obstacles(cube.edge)
         self._window = CubeWindow(cube, character, scenario.roles, self._inside)
-        self._cube_advice = CubeAdvice(cube, self.intrinsics, self.known_cubes)
         self._speaking = Speaking()
         self._complexion = Complexion()
 
@@ -223,7 +203,7 @@ class Playground:
 
     def keep_lens(self) -> None:
         """Begin with the lens as play has measured it; `play` must follow."""
-        self.look_through(self.measured_intrinsics)
+        self.look_through(self.tracked.measured_intrinsics)
 
     @property
     def intrinsics(self) -> Intrinsics:
@@ -259,7 +239,7 @@ class Playground:
         self.sight.intrinsics = content.pop("intrinsics")
         for name, value in content.items():
             setattr(self, name, value)
-        self.sight.look_through(self._tracker.intrinsics)
+        self.sight.look_through(self.tracked.intrinsics)
         self.sight.begin(self.cube)
 
     def adjust(self, settings: ScenarioSettings, look: str) -> None:
@@ -302,8 +282,7 @@ class Playground:
         replay = replay or ReplayInputs()
         if drawn:
             self.expect(frame)
-        self._tracker_error = ""
-        state = replay.state or self.track(frame)
+        state = replay.state or self.tracked.track(frame)
         self.sight.follow(state, self.cube)
         self._lap("tracking")
         controls = replay.controls or self.gesture(state)
@@ -317,7 +296,7 @@ class Playground:
         command = self.command(state, controls, decision, inputs)
         if replay.command is not None:
             command = replay.command
-        self.advise(frame, state)
+        self.tracked.advise(frame, state)
         self._lap("scenario")
         posed = replay.pose_for(self.character) or self.animate(command)
         self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
@@ -341,54 +320,16 @@ class Playground:
             line=self._speaking.line if command.speech is not None else None,
             interior=interior,
             appearance=appearance,
-            tracker_error=self._tracker_error,
+            tracker_error="" if replay.state else self.tracked.error,
         )
         if drawn:
             step = self._drawn(step)
         self._lap("drawing")
         return step
 
-    @property
-    def other_cube(self) -> CubeModel | None:
-        """Another cube than the one in play, if one is in view."""
-        return self._cube_advice.other_cube
-
-    @property
-    def measured_intrinsics(self) -> Intrinsics:
-        """The camera, with its focal length as well as play has told it so far."""
-        return self._tracker.measured_intrinsics
-
-    @property
-    def lens(self) -> LensEstimate:
-        """What the cube has shown of the camera's lens so far, besides what its intrinsics say."""
-        return self._tracker.lens
-
     def expect(self, frame: Frame) -> None:
         """Begin to draw a frame, as far as nothing of what is in it is known."""
         self._renderer.expect(frame)
-
-    def track(self, frame: Frame) -> CubeState:
-        """Find the cube in a frame; frames come in the order of time.
-
-        An error in the tracker's code costs this frame, and never the session.
-        """
-        try:
-            return self._tracker.update(frame)
-        except TrackingError:  # such as a frame of another size: the next one has it, too
-            raise
-        except Exception as error:
-            self._tracker_error = described_error(error)
-            LOG.debug("the tracker failed in frame %d", frame.index, exc_info=True)
-            return self._tracker.give_up(frame.timestamp)
-
-    def advise(self, frame: Frame, state: CubeState) -> None:
-        """Look now and then what the player has to be told of the cube in view.
-
-        One that is printed otherwise than its file says is read as it is, if it can be.
-        """
-        self._cube_advice.update(frame, state)
-        if self._cube_advice.printed is not self._tracker.cube:
-            self._tracker = CubeTracker(self._cube_advice.printed, self.intrinsics)
 
     def gesture(self, state: CubeState) -> CubeControls:
         """Compute what the hand does with the cube."""
@@ -428,7 +369,7 @@ class Playground:
 
     def _hint(self, decision: Outcome) -> str:
         """Return what the player can do now; what the cube in view is comes first."""
-        told = self._cube_advice.hint(self.scenario.name, self.fixed)
+        told = self.tracked.hint(self.scenario.name, self.fixed)
         return told or (LOOK_INSIDE if self._window.invites else decision.hint)
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:

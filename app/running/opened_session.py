@@ -119,7 +119,7 @@ class OpenedSession:
         stated = self.options.intrinsics is not None or self.source.intrinsics is not None
         if stated or not self.source.live:
             return None
-        measured = self.playground.measured_intrinsics
+        measured = self.playground.tracked.measured_intrinsics
         before = self.lenses.load(self.options.source, self.source.size)
         if before is not None and (before.matrix == measured.matrix).all():
             return None
@@ -136,7 +136,7 @@ class OpenedSession:
         Do nothing for "", if the scenario is to stay, or if there is nothing to change.
         """
         playground = self.playground
-        in_view = playground.other_cube
+        in_view = playground.tracked.other_cube
         if not name or (name == playground.scenario.name and in_view is None):
             return
         if self.keeps_scenario:

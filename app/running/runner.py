@@ -65,7 +65,9 @@ def run(
     finally:
         runner.close()
     summary.robot_log = session.robot.log()
-    summary.lens = lens_notice(session.playground.lens, session.playground.measured_intrinsics)
+    summary.lens = lens_notice(
+        session.playground.tracked.lens, session.playground.tracked.measured_intrinsics
+    )
     if isinstance(session.source, LiveFrames):
         summary.camera = session.source.health
     return summary

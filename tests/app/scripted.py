@@ -7,6 +7,7 @@ from typing import Self
 import numpy as np
 import pytest
 
+from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import Progress, run
 from cubeling.app.session import SessionOptions
@@ -59,7 +60,7 @@ def play_script(
     """Play a script, that of a bundled recording, with the true pose of the cube in every frame."""
     source = open_synthetic(f"{script or name}?rate={RATE:g}&size={PICTURE_WIDTH}x{PICTURE_HEIGHT}")
 
-    def track(frame: Frame) -> CubeState:
+    def track(_: TrackedCube, frame: Frame) -> CubeState:
         pose = source.truth(frame.index)
         still = np.zeros(6)
         return CubeState(True, pose, still, VARIANCE, "markers", (), 0.1, frame.timestamp)
@@ -71,5 +72,5 @@ def play_script(
         pytest.MonkeyPatch.context() as patch,
         open_session(options, source=Blank(source)) as session,
     ):
-        patch.setattr(session.playground, "track", track)
+        patch.setattr(TrackedCube, "track", track)
         run(session, progress)

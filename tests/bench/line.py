@@ -89,7 +89,7 @@ def measure(
                 break
             marks.append(time.perf_counter())
             playground.expect(frame)
-            state = playground.track(frame)
+            state = playground.tracked.track(frame)
             marks.append(time.perf_counter())
             controls = playground.gesture(state)
             outcome = playground.decide(state, controls, Inputs())

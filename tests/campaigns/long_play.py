@@ -26,6 +26,7 @@ from rich.console import Console
 from rich.table import Table
 
 from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, session_info
@@ -127,7 +128,7 @@ def play_virtually(hours: float, folder: Path) -> LongPlay:
         pytest.MonkeyPatch.context() as patch,
         open_session(options, source=source) as session,
     ):
-        patch.setattr(session.playground, "track", source.track)
+        patch.setattr(TrackedCube, "track", lambda _, frame: source.track(frame))
         run(session, measure).check()
         if session.speaker.problem:
             played.wrong.append(session.speaker.problem)

@@ -24,6 +24,10 @@ PAPER_CELLS = 0.5
 MIN_CORRELATION, MIN_LEAD = 0.8, 0.06
 """Correlation of a quad with its most similar pattern, and its lead over the next marker."""
 
+MIN_INNER_CORRELATION = 0.7
+"""Correlation of the cells inside the border, which tell markers apart: of 34 markers in blurred
+photographs and drawings the least is 0.74, of 8 that are other things five are below 0.7."""
+
 MIN_VISIBLE_SHARE = 0.6
 """Share of a quad's outline that must be seen."""
 
@@ -42,6 +46,7 @@ class SmearedPatterns:
         steps = ((np.arange(count) + 0.5) / count * span - PAPER_CELLS) / cells
         x, y = np.meshgrid(steps, steps)
         self._places = np.stack([x.ravel(), y.ravel()], axis=1)
+        self._inner = (np.abs(self._places - 0.5) < 0.5 - 1 / cells).all(axis=1)
         self._drawn_from = cube.dictionary, ids, count
 
     def match(self, soft: Image, quads: Quads) -> tuple[Indices, Array]:
@@ -51,11 +56,16 @@ class SmearedPatterns:
         """
         values = _normalize(sample_grey(soft, quads.map(self._places)))
         patterns = _smeared_patterns(*self._drawn_from)
-        alike = np.tensordot(values, patterns, axes=([1], [2])).max(axis=2)
+        by_smear = np.tensordot(values, patterns, axes=([1], [2]))
+        alike = by_smear.max(axis=2)
         order = np.argsort(alike, axis=1, kind="stable")
         best, next_best = np.take_along_axis(alike, order[:, :-3:-1], axis=1).T
         good = (best > MIN_CORRELATION) & (best - next_best > MIN_LEAD)
         good &= quads.visible > MIN_VISIBLE_SHARE
+        for each in np.flatnonzero(good).tolist():
+            smeared = patterns[order[each, -1], by_smear[each, order[each, -1]].argmax()]
+            inner = _normalize(np.stack([values[each, self._inner], smeared[self._inner]]))
+            good[each] = inner[0] @ inner[1] > MIN_INNER_CORRELATION
         return np.where(good, order[:, -1], -1), np.asarray(best, np.float64)
 
 

@@ -74,6 +74,11 @@ class Candidate:
         return len({side_of(face) for face in self.faces}) == 1
 
     @property
+    def lone_residual(self) -> float | None:
+        """Residual of the edges of a lone face [px]; None where others were measured."""
+        return self.residual if self.lone and self.measurements else None
+
+    @property
     def rank(self) -> tuple[bool, bool, float, float]:
         """Sorts the better ones first."""
         evidence = self.evidence.total if self.evidence else 0.0

@@ -7,13 +7,15 @@ from typing import Literal
 import numpy as np
 
 from cubeling.tracking.cube.faces import FacePlanes
-from cubeling.tracking.cube.model import CubeModel
+from cubeling.tracking.cube.model import CubeModel, side_of
 from cubeling.tracking.geometry.arrays import Array, Floats, Image
 from cubeling.tracking.geometry.image_region import Patch
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.candidate import Candidate
 from cubeling.tracking.refinement.evidence import Evidence
 from cubeling.tracking.refinement.footprint import Footprint
+from cubeling.tracking.refinement.photometry.marker_images import DrawnMarkers
+from cubeling.tracking.refinement.photometry.placed_samples import MIN_FACING_COSINE
 from cubeling.tracking.refinement.photometry.still_alignment import (
     EXPECTED_BLUR_PX,
     MEASURED_STIFFNESS,
@@ -66,8 +68,11 @@ class CellMatch:
     found: tuple[str, ...]
     """Names of the faces that are found there."""
 
+    whole: tuple[str, ...]
+    """Those of them of which every cell is right."""
+
     proved: bool
-    """Whether one of them is found whole, with every cell right, or two in part."""
+    """Whether one of them is found whole, or two in part."""
 
     evidence: Evidence
     """How much the image speaks for the pose: by faces that are found, less those missing."""
@@ -86,11 +91,16 @@ class CellMatch:
             certain=self.proved,
             evidence=self.evidence,
             blur=aligned.blur,
+            # The other lean of a face shows none of its neighbours' cells where they are.
+            agreed=len(set(map(side_of, self.whole))) > 1,
         )
 
 
-Step = Literal["align", "align coarsely", "weigh", "join", "measure", "flatten", ""]
+Step = Literal["look", "align", "align coarsely", "weigh", "join", "measure", "flatten", ""]
 """A step of a search; "" after the last one."""
+
+EFFORT = {"align coarsely": 3, "join": 2, "measure": 3}
+"""How many times as long as the others some steps take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +124,20 @@ class CellRun:
 
     match: CellMatch | None = None
     """What `CellSearch.search` returns, as far as it is known."""
+
+    markers: DrawnMarkers | None = None
+    """What was rendered at the pose where it began."""
+
+    exact: bool = False
+    """As in `CellSearch.begin`."""
+
+    alone: bool = False
+    """Whether it has looked for other faces than those that were read, and sees none."""
+
+    @property
+    def effort(self) -> int:
+        """How long the next step takes, in the time of the shortest."""
+        return EFFORT.get(self.step, 1)
 
     @property
     def done(self) -> bool:
@@ -149,14 +173,28 @@ class CellSearch:
         return run.match
 
     def begin(
-        self, image: Image, start: Array, tone: Floats, read: Collection[str] | None
+        self,
+        image: Image,
+        start: Array,
+        tone: Floats,
+        read: Collection[str] | None,
+        *,
+        exact: bool = False,
     ) -> CellRun:
-        """Begin a `search`, which `advance` carries on until it is done."""
+        """Begin a `search`, which `advance` carries on until it is done.
+
+        `exact` is whether the start rests on the corners of markers, and is not off by a cell.
+        """
         patch = self._footprint.crop(image, start, tone)
-        return CellRun(patch, start, read, "align" if patch else "")
+        if patch is None:
+            return CellRun(None, start, read, "")
+        alone = read is None or self._in_view(start) <= set(read)
+        return CellRun(patch, start, read, "align" if alone else "look", exact=exact)
 
     def advance(self, run: CellRun) -> CellRun:
-        """Take the next step of a search; each costs about as much as the others."""
+        """Take the next step of a search."""
+        if run.step == "look":
+            return self._look(run)
         if run.step == "align":
             return self._align(run)
         if run.step == "align coarsely":
@@ -167,11 +205,30 @@ class CellSearch:
             return self._join(run)
         return self._measure(run) if run.step == "measure" else self._flatten(run)
 
-    def _align(self, run: CellRun) -> CellRun:
-        """Align the faces that were read."""
+    def _look(self, run: CellRun) -> CellRun:
+        """Look which other faces are seen where the search begins: these are aligned at once."""
         assert run.patch is not None
-        found = self._aligner.align(run.patch, run.start, run.read)
+        assert run.read is not None
+        seen = self._aligner.align(run.patch, run.start, steps=1)
+        if seen is None:
+            return replace(run, step="align")
+        cosines = dict(zip(self._faces.names, self._faces.cosines(run.start), strict=True))
+        joining = {
+            face
+            for face, share in seen.correlations.items()
+            if share > MIN_SPEAKING and cosines[face] > MIN_SEEN_COSINE
+        }
+        alone = joining <= set(run.read)
+        read = {*run.read, *joining}
+        return replace(run, read=read, markers=seen.markers, alone=alone, step="align")
+
+    def _align(self, run: CellRun) -> CellRun:
+        """Align the faces that were read, or seen at once."""
+        assert run.patch is not None
+        found = self._aligner.align(run.patch, run.start, run.read, markers=run.markers)
         good = found and max(found.correlations.values()) > MIN_LOCKED
+        if not good and run.exact:
+            return replace(run, step="")
         return replace(run, aligned=found, step="weigh" if good else "align coarsely")
 
     def _align_coarsely(self, run: CellRun) -> CellRun:
@@ -192,7 +249,8 @@ class CellSearch:
         patch, aligned = run.patch, run.aligned
         assert patch is not None
         assert aligned is not None
-        match = self._weigh(patch, aligned)
+        compared = self._in_view(aligned.camera_from_cube) <= set(aligned.correlations)
+        match = self._match(aligned) if compared else self._weigh(patch, aligned)
         if not match or not match.found:
             return replace(run, match=match, step="")
         # The markers that are drawn to weigh them need not be drawn again.
@@ -245,6 +303,11 @@ class CellSearch:
         """Weigh a pose by all faces that it shows."""
         return self._match(self._aligner.realign(patch, aligned, None, steps=1, fine=fine))
 
+    def _in_view(self, camera_from_cube: Array) -> set[str]:
+        """Return the names of the faces that may be compared at a pose, (4, 4)."""
+        facing = self._faces.facing(camera_from_cube, MIN_FACING_COSINE)
+        return {self._faces.names[number] for number in facing}
+
     def _match(self, aligned: StillAlignment | None) -> CellMatch | None:
         if aligned is None:
             return None
@@ -263,10 +326,11 @@ class CellSearch:
         if missing.any():
             against = missing * missing.max() / missing.sum()
             blocks -= MISSING_EVIDENCE / blocks.shape[1] * against[:, None]
-        whole = any(alike[face] > MIN_CORRELATION and not aligned.wrong[face] for face in found)
-        return CellMatch(
-            aligned, found, whole or len(found) > 1, Evidence(blocks, aligned.evidence.bend)
+        whole = tuple(
+            face for face in found if alike[face] > MIN_CORRELATION and not aligned.wrong[face]
         )
+        proved = bool(whole) or len(found) > 1
+        return CellMatch(aligned, found, whole, proved, Evidence(blocks, aligned.evidence.bend))
 
 
 def _joining(match: CellMatch) -> set[str]:

@@ -18,6 +18,11 @@ CORNER_ERROR_PX, CORNER_ERROR_M = 0.1, 0.00012
 pixels, and by print, folds and a moving hand. Measured on photographs of one object at two sizes,
 which `make bench-photographs` shows."""
 
+SHAPE_FREEDOM, RESIDUAL_SHARE = 2, 0.3
+"""A lone marker has so many degrees of freedom beyond its pose, by which the residual of its edges
+shows how far its corners are displaced, and how large that residual then is as a share of the
+displacement (`test_systematic_error`)."""
+
 BLUR_SHARE, SHARP_PX = 0.5, 0.7
 """Displacement of a corner as a share of the blur beyond that of a focused lens [px]: what blurs is
 not a round lens alone, and motion in one direction leans a body by up to 4°. Measured as the
@@ -52,7 +57,12 @@ class SystematicError:
         self._focal = UNSTATED_FOCAL if stated is None else stated
 
     def covariance(
-        self, camera_from_cube: Array, faces: tuple[str, ...], k1_error: float, blur: float = 0.0
+        self,
+        camera_from_cube: Array,
+        faces: tuple[str, ...],
+        k1_error: float,
+        blur: float = 0.0,
+        lone_residual: float | None = None,
     ) -> tuple[Array, Array]:
         """Covariance of a pose delta by the corners of `faces`, (6, 6), and how the lens moves it.
 
@@ -61,7 +71,8 @@ class SystematicError:
         and about each axis, (6, 10).
         `k1_error` is how far the radial distortion is off, and `blur` the blur of the image [px],
         one standard deviation each. Where the lens was never measured, how k1 stretches the cube is
-        solved for with the pose, and its error is among those by the corners.
+        solved for with the pose, and its error is among those by the corners. `lone_residual` is
+        that of the edges of a lone face [px], None for cells and for several faces.
         """
         rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
         arms = np.concatenate([self._corners[name] for name in faces]) @ rotation.T
@@ -78,6 +89,8 @@ class SystematicError:
         pixels = focal / float(origin[2])
         by_light = CORNER_ERROR_PX + BLUR_SHARE * max(blur - SHARP_PX, 0.0)
         error = float(np.hypot(by_light, CORNER_ERROR_M * pixels))
+        if lone_residual is not None:
+            error = min(error, _as_displaced(error, lone_residual))
         # Square on, a tilt shows only by its cosine.
         tilt = np.sqrt(2 * error / (self._half * pixels))
         information = rows.T @ rows / error**2
@@ -95,3 +108,14 @@ class SystematicError:
         besides = curved * np.diag([*[self._half] * 3, 1.0, 1.0, 1.0])
         moves = np.concatenate([moves, besides], axis=1)
         return np.asarray(inverse[:, :6] + shift, np.float64), np.asarray(moves, np.float64)
+
+
+def _as_displaced(expected: float, residual: float) -> float:
+    """How far the corners of a lone marker are displaced, whose edges leave a residual [px].
+
+    What is expected of all paper counts as one more measurement of it, as this print may be a
+    better one.
+    """
+    shown = residual / RESIDUAL_SHARE
+    mean_square = (expected**2 + SHAPE_FREEDOM * shown**2) / (1 + SHAPE_FREEDOM)
+    return float(np.sqrt(mean_square))

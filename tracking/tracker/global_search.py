@@ -51,15 +51,15 @@ BUDGET_PICTURES = 2.2
 """What the trials of one call may cost beside the passes that each call begins with, counted in
 pictures that are read: about as many detections by OpenCV."""
 
-SMALL_PICTURE_PX, SMALL_BUDGET_PX = 640 * 480, 9_000_000
-"""Pictures of at most so many pixels have this budget instead [px], ten steps of comparing cells.
+SMALL_PICTURE_PX, SMALL_BUDGET_PX = 640 * 480, 13_000_000
+"""Pictures of at most so many pixels have this budget instead [px]: both leans of a lone face.
 Those take as long as in a large picture: by the other budget a cube that moves through small
 pictures has gone before it is found, and 40 % fewer frames are trusted."""
 
 CELLS_COST_PX, BLUR_COST_PX = 900_000, 4_000_000
-"""What a step of comparing the cells with the image costs, and aligning a blurred image: as much as
-reading so many pixels for partly hidden markers. `make bench-photographs` prints what calls take.
-"""
+"""What a short step of comparing the cells with the image costs, and aligning a blurred image: as
+much as reading so many pixels for partly hidden markers. `make bench-photographs` prints what calls
+take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +124,10 @@ class Trial:
 
     run: Callable[[Search], Search]
     """Does it, and returns what the search has come to."""
+
+
+_Start = tuple[CornerPose, CellRun | None]
+"""A pose where the cells are compared, and how far that has come."""
 
 
 class GlobalDetector:
@@ -201,52 +205,59 @@ class GlobalDetector:
                 break
         return search
 
-    def _try_markers(self, search: Search, read: list[Observation]) -> tuple[Search, list[Trial]]:
-        """Take the pose that several faces agree on; else return how to compare the cells."""
+    def _try_markers(
+        self, search: Search, read: list[Observation], *, crisp: bool = True
+    ) -> tuple[Search, list[Trial]]:
+        """Take the pose that several faces agree on; else return how to compare the cells.
+
+        `crisp` is whether OpenCV reads the markers. Beside a lone one that it does not read, which
+        is covered or blurred, no other face has edges.
+        """
         if not read:
             return search, []
         search = replace(search, seen=(*search.seen, *read))
         if lie_flat(read):
             return replace(search, flat=True, found=()), []
         solutions = self._poses.solve(read, search.expected)
-        agreed = self._poses.find_agreed(search.markers.grey, solutions, read, search.tone)
-        if agreed is not None:
-            return search.find([agreed]), []
-        plan = [self._comparison(solutions, read, mirrored=False)] if solutions else []
+        if crisp or len({each.face.side for each in read}) > 1:
+            agreed = self._poses.find_agreed(search.markers.grey, solutions, read, search.tone)
+            if agreed is not None:
+                return search.find([agreed]), []
+        starts: list[_Start] = [(each, None) for each in solutions]
+        plan = [self._comparison(starts, read, mirrored=False)] if starts else []
         return search, plan
 
     def _comparison(
-        self,
-        solutions: list[CornerPose],
-        read: list[Observation],
-        *,
-        mirrored: bool,
-        run: CellRun | None = None,
+        self, starts: list[_Start], read: list[Observation], *, mirrored: bool
     ) -> Trial:
-        compare = partial(self._compare_cells, solutions, read, mirrored, run)
-        return Trial(CELLS_COST_PX, compare)
+        run = starts[0][1]
+        compare = partial(self._compare_cells, starts, read, mirrored)
+        return Trial(CELLS_COST_PX * (run.effort if run else 1), compare)
 
     def _compare_cells(
-        self,
-        solutions: list[CornerPose],
-        read: list[Observation],
-        mirrored: bool,
-        run: CellRun | None,
-        search: Search,
+        self, starts: list[_Start], read: list[Observation], mirrored: bool, search: Search
     ) -> Search:
         """Take a step to compare the cells at the first of some poses; the others follow.
 
         After them comes, once, the other lean of a single face, whether or not the corners proposed
-        that.
+        that. None does where several faces agree.
         """
-        first, *others = solutions
+        (first, run), *others = starts
         found = self._poses.compare_cells(search.markers.grey, first, read, search.tone, run)
         if isinstance(found, CellRun):
-            ahead = self._comparison(solutions, read, mirrored=mirrored, run=found)
-            return replace(search, half_done=True).try_first([ahead])
+            ahead = _in_order([(first, found), *others])
+            trial = self._comparison(ahead, read, mirrored=mirrored)
+            return replace(search, half_done=True).try_first([trial])
         search = search.find(found)
+        agreed = search.found and search.found[0].certain and search.found[0].agreed
+        # A lone marker that is not there at one lean is not there at the other.
+        lone = len(first.observations) == 1
+        absent = lone and found and all(each.evidence is None for each in found)
+        if agreed or absent:
+            return replace(search, half_done=False)
         if not others and not mirrored:
-            others, mirrored = self._poses.mirror(first, search.found), True
+            others = [(each, None) for each in self._poses.mirror(first, search.found)]
+            mirrored = True
         search = replace(search, half_done=bool(others))
         if not others:
             return search
@@ -255,7 +266,7 @@ class GlobalDetector:
     def _read_others(self, search: Search) -> Search:
         """Read the markers that OpenCV finds with more effort."""
         read = search.markers.read(self._cube.dictionary, "other windows")
-        return self._try_more(search, markers_of(self._cube, read))
+        return self._try_more(search, markers_of(self._cube, read), crisp=True)
 
     def _read_hidden(self, search: Search) -> Search:
         """Read partly hidden markers, in a low image at twice its size at once.
@@ -264,7 +275,7 @@ class GlobalDetector:
         """
         grey = search.markers.grey
         small = len(grey) < MIN_SINGLE_HEIGHT_PX
-        search = self._try_more(search, self._hidden.detect(grey, doubled=small))
+        search = self._try_more(search, self._hidden.detect(grey, doubled=small), crisp=False)
         if small or not search.seen:
             return search
         left, top, right, bottom = region = _around(search.seen, grey)
@@ -277,13 +288,13 @@ class GlobalDetector:
 
     def _read_small(self, region: Region, search: Search) -> Search:
         read = self._hidden.detect(search.markers.grey, region, doubled=True)
-        return self._try_more(search, read)
+        return self._try_more(search, read, crisp=False)
 
-    def _try_more(self, search: Search, read: list[Observation]) -> Search:
+    def _try_more(self, search: Search, read: list[Observation], *, crisp: bool) -> Search:
         """Try markers of a thorough pass, unless their faces were tried and nothing was proved."""
         tried = {each.face.name for each in search.seen}
         hopeless = search.found and not any(each.certain for each in search.found)
-        search, plan = self._try_markers(search, read)
+        search, plan = self._try_markers(search, read, crisp=crisp)
         if hopeless and tried.issuperset(each.face.name for each in read):
             return search
         return search.try_first(plan)
@@ -325,6 +336,23 @@ class GlobalDetector:
             return search.try_first([self._alignment(starts[1:], 0, None, found)])
         # Where no blur explains the image, the corners are still the best guess.
         return replace(search, found=found or search.found)
+
+
+def _in_order(starts: list[_Start]) -> list[_Start]:
+    """Order poses whose cells are compared: all are weighed before the best one is measured.
+
+    One at which other faces are seen comes first, as it may end the search.
+    """
+
+    def order(start: _Start) -> tuple[int, float]:
+        run = start[1]
+        if run is None:
+            return 1, 0.0
+        if run.step == "measure" and run.match:
+            return 3, -run.match.evidence.total
+        return 2 * (run.alone and run.step == "align"), 0.0
+
+    return sorted(starts, key=order)
 
 
 def _show_the_same(before: Image, now: Image) -> bool:

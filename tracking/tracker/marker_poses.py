@@ -113,7 +113,7 @@ class MarkerPoses:
         """
         if run is None:
             read = tuple(each.face.name for each in solution.observations)
-            run = self._cells.begin(image, solution.camera_from_cube, tone, read)
+            run = self._cells.begin(image, solution.camera_from_cube, tone, read, exact=True)
         if not run.done:
             run = self._cells.advance(run)
         if not run.done:

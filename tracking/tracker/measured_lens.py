@@ -33,6 +33,8 @@ class MeasuredLens:
 
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
         self._told = intrinsics
+        self._begun_at = 1.0
+        """Scale of the lens from which the estimator counts."""
         self._in_use = FocalLength(1.0, intrinsics.focal_deviation or 0.0)
         self._estimator = None if self._in_use.known else _estimator_of(cube, intrinsics)
 
@@ -64,7 +66,8 @@ class MeasuredLens:
     @property
     def best(self) -> Intrinsics:
         """The lens as well as it is known."""
-        return self._through(self._estimator.estimate) if self._estimator else self._told
+        found = self._found
+        return self._told.lengthen(found.scale, found.deviation) if found else self._told
 
     def learn(self, faces: "Sequence[FaceCorners]") -> None:
         """Learn from the faces of the cube in one picture."""
@@ -73,13 +76,26 @@ class MeasuredLens:
 
     def take_better(self) -> Intrinsics | None:
         """Return the lens to look through from now on; None where that stays the same."""
-        if self._estimator is None or not self._estimator.estimate.is_better(self._in_use):
+        found = self._found
+        if found is None or not found.is_better(self._in_use):
             return None
-        self._in_use = self._estimator.estimate
+        self._in_use = found
         return self.best
 
-    def _through(self, focal: FocalLength) -> Intrinsics:
-        return self._told.lengthen(focal.scale, focal.deviation)
+    def reprint(self, cube: CubeModel) -> None:
+        """Measure on with another print of the cube, from what is known so far."""
+        if self._estimator is not None:
+            best = self.best
+            self._begun_at *= self._estimator.estimate.scale
+            self._estimator = _estimator_of(cube, best)
+
+    @property
+    def _found(self) -> FocalLength | None:
+        """What was measured, None where nothing is."""
+        if self._estimator is None:
+            return None
+        found = self._estimator.estimate
+        return replace(found, scale=self._begun_at * found.scale)
 
 
 def _estimator_of(cube: CubeModel, intrinsics: Intrinsics) -> "FocalLengthEstimator":

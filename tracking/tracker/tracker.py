@@ -67,6 +67,17 @@ class CubeTracker:
         self._look_through(intrinsics)
         self._lens = LensEstimator(cube, self._projection)
 
+    def reprint(self, cube: CubeModel) -> None:
+        """Take the cube as it is printed, not as was thought; what is known of the camera stays.
+
+        `cube` has the same dictionary and faces of the same names.
+        """
+        self.cube = cube
+        self._past = Past()
+        self._measured.reprint(cube)
+        self._look_through(self.intrinsics)
+        self._lens = LensEstimator(cube, self._projection)
+
     def _look_through(self, intrinsics: Intrinsics) -> None:
         """Take another lens; what depends on none, and the track, is kept."""
         cube = self.cube
@@ -158,7 +169,7 @@ class CubeTracker:
             return self._predict(now, verdict.refused)
         pose, noise = found.camera_from_cube, found.covariance
         by_corners, lens_shifts = self._systematic_error.covariance(
-            pose, found.faces, self._lens.k1_error, found.blur
+            pose, found.faces, self._lens.k1_error, found.blur, found.lone_residual
         )
         if is_uncertain(noise + by_corners):
             return self._predict(now, "unsure")

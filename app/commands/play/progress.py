@@ -110,7 +110,7 @@ def _keep_lens(session: OpenedSession, console: Console) -> None:
     """Keep the lens that play has measured, and print where."""
     path = session.keep_lens()
     if path is not None:
-        lens = focal_length(session.playground.measured_intrinsics)
+        lens = focal_length(session.playground.tracked.measured_intrinsics)
         console.print(
             f"[dim]The lens of this camera, {lens}, is kept in {escape(str(path))}[/]",
             soft_wrap=True,
@@ -274,7 +274,9 @@ class _LensLine:
     def __call__(self, step: Step) -> None:
         if self._said:
             return
-        words = lens_notice(self._playground.lens, self._playground.measured_intrinsics)
+        words = lens_notice(
+            self._playground.tracked.lens, self._playground.tracked.measured_intrinsics
+        )
         if words is not None:
             self._console.print(words)
             self._said = True

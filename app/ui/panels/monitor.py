@@ -88,7 +88,7 @@ class SessionMonitor:
     def update(self, step: Step, robot: RobotView, playground: "Playground") -> None:
         """Take what a frame gave; who has the session keeps the other attributes up to date."""
         self.step, self.robot = step, robot
-        self.lens, self.intrinsics = playground.lens, playground.measured_intrinsics
+        self.lens, self.intrinsics = playground.tracked.lens, playground.tracked.measured_intrinsics
         self.quality = playground.quality.name
         now, state, feels = step.frame.timestamp, step.state, step.emotion.emotion
         shown = robot.shown

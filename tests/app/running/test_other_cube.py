@@ -62,7 +62,7 @@ def test_a_cube_of_the_player_is_named_instead_of_a_bundled_one_with_its_markers
     assert hints(playground, pictures)[-1] == (
         "This is the museum cube: press 1 to play follow with it"
     )
-    assert playground.other_cube is PLAIN
+    assert playground.tracked.other_cube is PLAIN
 
 
 def test_the_name_of_a_cube_need_not_be_repeated():

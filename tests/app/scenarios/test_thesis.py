@@ -26,7 +26,10 @@ def whole_turn():
     """One turn clockwise and back, tracked: angle of the camera, for every frame."""
     with open_synthetic(f"turn?{SMALL}") as source:
         playground = Playground("follow", intrinsics_for(source.intrinsics, source.size))
-        return [(playground.gesture(playground.track(frame)), frame.timestamp) for frame in source]
+        return [
+            (playground.gesture(playground.tracked.track(frame)), frame.timestamp)
+            for frame in source
+        ]
 
 
 @pytest.mark.parametrize("name", SPEED_MAPS)

@@ -75,6 +75,41 @@ def test_a_likeness_is_not_measured_with_more_samples() -> None:
     assert set(steps) <= {"align", "align coarsely", "weigh"}
 
 
+def test_what_is_not_where_a_marker_was_read_is_given_up_at_once() -> None:
+    """No coarse alignment follows, as corners that were read are not off by a cell."""
+    noise = np.random.default_rng(1).normal(120, 30, (480, 640))
+    grey, front = np.clip(noise, 0, 255).astype(np.uint8), ("front",)
+    search = CellSearch(with_faces("front"), Projection(CAMERA))
+    for exact, steps in ((True, 1), (False, 2)):
+        run = search.begin(grey, held(at=(0.0, 0.0, 0.6)), TONE, front, exact=exact)
+        for _ in range(steps):
+            assert not run.done
+            run = search.advance(run)
+        assert run.done == exact
+        assert run.match is None
+
+
+def test_a_first_look_tells_the_lean_that_shows_other_faces() -> None:
+    """They are aligned at once, and two that are right prove that no other lean is."""
+    pose = held(at=(0.0, 0.0, 0.6))
+    search, seen = CellSearch(CUBE, Projection(CAMERA)), picture(drawn(CUBE, pose))
+    right, wrong = (
+        search.advance(search.begin(seen, each, TONE, ("front",)))
+        for each in (pose, mirrored(pose))
+    )
+    assert (right.alone, wrong.alone) == (False, True)
+    aligned = search.advance(right).aligned
+    assert aligned is not None
+    assert set(aligned.correlations) == {"front", "right", "top"}
+    match = search.search(seen, pose, TONE, ("front",))
+    assert match is not None
+    assert match.candidate.agreed
+    lone = search.search(picture(drawn(with_faces("front"), pose)), pose, TONE, ("front",))
+    assert lone is not None
+    assert lone.proved
+    assert not lone.candidate.agreed
+
+
 @pytest.mark.parametrize("lean", [0.5, 0.8])
 def test_a_lone_face_near_by_tells_its_lean_by_perspective(lean: float) -> None:
     pose = held(lean, 0.1, 0.2, at=(0.02, 0.01, 0.6))

@@ -17,6 +17,7 @@ from cubeling.tracking.refinement.systematic_error import (
     COMMON_SHIFT_PX,
     CORNER_ERROR_M,
     CORNER_ERROR_PX,
+    RESIDUAL_SHARE,
     UNSTATED_FOCAL,
     SystematicError,
 )
@@ -147,6 +148,41 @@ def test_a_lone_face_square_on_is_as_uncertain_as_its_tilt() -> None:
     )
     assert (claimed > found / 2).all()
     assert (claimed < found * 2).all()
+
+
+def test_edges_show_by_their_residual_how_far_corners_are_displaced() -> None:
+    """Least squares take 6 of the 8 directions in which four corners may be displaced."""
+    pose, random = held(0.5, 0.4, 0.2, at=(0.0, 0.0, 0.5)), np.random.default_rng(1)
+    corners, shares = corners_of(("front",)), np.linspace(0, 1, 25)[:, None]
+    ends = np.roll(corners, -1, axis=0)
+    points = np.concatenate(
+        [one + shares * (end - one) for one, end in zip(corners, ends, strict=True)]
+    )
+    at = shown(points, pose, CAMERA).reshape(4, -1, 2)
+    along = at[:, -1] - at[:, 0]
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    moved = [shown(points, se3.apply_delta(pose, 1e-5 * step), CAMERA) for step in np.eye(6)]
+    slides = np.stack([((each.reshape(at.shape) - at) @ across[:, :, None]) for each in moved])
+    basis = np.linalg.qr(slides.reshape(6, -1).T)[0]
+    left = []
+    for displaced_by in random.normal(0, 1, (400, 4, 2)):
+        ahead = np.roll(displaced_by, -1, axis=0)
+        off = displaced_by[:, None] + shares * (ahead - displaced_by)[:, None]
+        normal = (off @ across[:, :, None]).ravel()
+        left.append(np.mean((normal - basis @ (basis.T @ normal)) ** 2))
+    assert np.sqrt(np.mean(left)) == pytest.approx(RESIDUAL_SHARE, rel=0.1)
+
+
+def test_edges_that_lie_right_tell_of_a_better_print_than_most() -> None:
+    pose, lens = held(0.1, 0.05, at=(0.0, 0.0, 0.5)), Projection(MEASURED)
+    error, lone = SystematicError(CUBE, lens), ("front",)
+    usual, right, wrong = (
+        np.trace(error.covariance(pose, lone, MEASURED_LENS[0], 0.0, residual)[0][3:, 3:])
+        for residual in (None, 0.01, 1.0)
+    )
+    assert right < usual / 1.5
+    assert wrong == usual
 
 
 @pytest.mark.parametrize(("camera", "lens"), [(CAMERA, CLAIMED_LENS), (MEASURED, MEASURED_LENS)])

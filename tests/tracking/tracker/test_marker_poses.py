@@ -34,9 +34,9 @@ class CountingCells(CellSearch):
 
     count = 0
 
-    def begin(self, *arguments) -> CellRun:
+    def begin(self, *arguments, **options) -> CellRun:
         self.count += 1
-        return super().begin(*arguments)
+        return super().begin(*arguments, **options)
 
 
 def find(

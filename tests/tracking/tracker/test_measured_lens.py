@@ -10,6 +10,7 @@ from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.state import CubeState
+from cubeling.tracking.tracker.print_check import PrintFault, cube_with
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.tracking.drawn import CAMERA, Array, held, photograph, scene
 
@@ -69,6 +70,23 @@ def test_the_same_frames_tell_the_same_lens(shown: list[tuple[Frame, Array]]) ->
     assert np.array_equal(one.measured_intrinsics.matrix, other.measured_intrinsics.matrix)
     assert (one.measured_intrinsics.focal_deviation or 1.0) < 0.1
     assert not one.measured_intrinsics.distortion.any()
+
+
+@pytest.mark.slow(reason="a focal length is known after a second of play")
+def test_another_print_is_seen_through_the_lens_that_was_measured(
+    shown: list[tuple[Frame, Array]],
+) -> None:
+    tracker = CubeTracker(CUBE, GUESSES[1.7])
+    tracked(tracker, shown[:24])
+    before, pose = tracker.measured_intrinsics, held()
+    printed = cube_with(CUBE, PrintFault("turned"))
+    tracker.reprint(printed)
+    assert np.allclose(tracker.measured_intrinsics.matrix, before.matrix)
+    assert tracker.measured_intrinsics.focal_deviation == before.focal_deviation
+    state = tracker.update(Frame(photograph(scene((printed, pose))), 1.0, 30))
+    assert state.camera_from_cube is not None
+    assert state.focal_scale == pytest.approx(1 / 1.7, rel=0.05)
+    assert state.camera_from_cube[2, 3] == pytest.approx(pose[2, 3], rel=0.05)
 
 
 @pytest.mark.parametrize("deviation", [None, 0.002])

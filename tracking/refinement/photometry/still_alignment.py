@@ -135,15 +135,18 @@ class StillAligner:
         start: Array,
         faces: Collection[str] | None = None,
         blur: float = EXPECTED_BLUR_PX,
+        steps: int = MAX_STEPS,
+        markers: DrawnMarkers | None = None,
     ) -> StillAlignment | None:
         """Align from a pose, (4, 4), that is right to about half a cell; None if not in view.
 
-        `faces` are those that are compared with the image, None for all that face the camera, and
-        `blur` the expected blur of the patch, one standard deviation [px].
+        `faces` are those that are compared with the image, None for all that face the camera,
+        `blur` the expected blur of the patch, one standard deviation [px], and `markers` what was
+        rendered near this pose before.
         """
         flat = np.zeros((len(self._placer.faces.names), 3))
-        begin = blur, 0.0, flat, None
-        return self._align(patch, start, faces, begin, MAX_STEPS, False, 1.0)
+        begin = blur, 0.0, flat, markers
+        return self._align(patch, start, faces, begin, steps, False, 1.0)
 
     def realign(
         self,

@@ -44,9 +44,8 @@ GUESS = Intrinsics.guess((1280, 720))
 
 def feed(*frames, options=OPTIONS, lens=NO_LENS, intrinsics=GUESS):
     """Feed a monitor with one step a frame: changes of its state, an emotion, and a robot."""
-    playground: Any = SimpleNamespace(
-        lens=lens, measured_intrinsics=intrinsics, quality=QUALITIES["reduced"]
-    )
+    tracked = SimpleNamespace(lens=lens, measured_intrinsics=intrinsics)
+    playground: Any = SimpleNamespace(tracked=tracked, quality=QUALITIES["reduced"])
     nothing: Any = None
     monitor = SessionMonitor(options, FrameTimes(itertools.count(step=0.01).__next__))
     for number, (changes, emotion, robot) in enumerate(frames):
