@@ -174,9 +174,16 @@ def _draw_shift(axes: Axes, name: str, after: str, chance: float) -> None:
     axes.add_patch(arrow)
     words = f"{chance:.0%}"
     x, y = label.tolist()
-    ground = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
-    style = {"color": _COLORS[name], "ha": "center", "va": "center", "fontsize": 10}
-    axes.text(x, y, words, bbox=ground, **style)
+    axes.text(
+        x,
+        y,
+        words,
+        color=_COLORS[name],
+        ha="center",
+        va="center",
+        fontsize=10,
+        bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"},
+    )
 
 
 def _draw_rests(axes: Axes, database: IdleDatabase, balances: list[str]) -> None:

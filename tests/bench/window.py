@@ -47,8 +47,8 @@ def measure(scenario: str, seconds: float, quality: str, every: bool) -> dict[st
     beside: list[dict[str, float]] = [{}]
     lap, others = FrameTimes.lap, [_others()]
 
-    def lap_of_all(times: FrameTimes, part: str) -> None:
-        lap(times, part)
+    def lap_of_all(self: FrameTimes, part: str) -> None:
+        lap(self, part)
         now = _others()
         beside[-1][part] = beside[-1].get(part, 0.0) + now - others[0]
         others[0] = now
@@ -150,8 +150,8 @@ def main() -> None:
             found = json.loads(done.stdout)
             for part, values in found["parts"].items():
                 figures = np.mean(values), np.median(values), np.percentile(values, 95)
-                figures = *figures, found["beside"][part]
-                table.add_row(name, part, *(f"{each:.2f}" for each in figures))
+                shown_figures = (*figures, found["beside"][part])
+                table.add_row(name, part, *(f"{each:.2f}" for each in shown_figures))
             table.add_row(name, "CPU of all threads", f"{found['cpu']:.2f}")
             table.add_row(name, "CPU of the main thread", f"{found['main']:.2f}")
             median, slow = found["summary"]

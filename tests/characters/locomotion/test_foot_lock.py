@@ -121,6 +121,7 @@ def test_only_a_foot_that_bends_at_its_toes_is_lowered_to_their_joint(human):
 
     def lowered(character):
         lock = FootLockLayer(character).lock
+        assert lock is not None
         for _ in range(12):
             lock.apply(pose, RootDelta(), [True, True], False, 1 / 30)
         return [-foot.offset.y for foot in lock.feet]
