@@ -37,12 +37,12 @@ MAX_POSTURES = 7
 PORTRAIT_PX = (150, 230)
 """Width and height of a posture."""
 
-COMPONENTS, SHOWN_S = 3, 20.0
-"""Components, and seconds of small variations, that are drawn."""
+COMPONENTS, SHOWN_S, TICK_S = 3, 20.0, 5.0
+"""Components, and seconds of small variations at most, that are drawn; and those between ticks."""
 
 _NAMES = {"left": "left foot", "both": "both feet", "right": "right foot"}
 _COLORS = dict(zip(BALANCES, ("#0072b2", "#6d7385", "#d55e00"), strict=True))
-_NODES = {"left": (0.17, 0.22), "both": (0.5, 0.7), "right": (0.83, 0.22)}
+_NODES = {"left": (0.0, 0.15), "both": (0.5, 0.72), "right": (1.0, 0.15)}
 _MIDDLE = np.array([0.5, 0.4])
 _SCALES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # [°]
 
@@ -126,8 +126,9 @@ def _pictures(database: IdleDatabase, postures: list[RestingPosture]) -> list[ND
 def _draw_transitions(axes: Axes, database: IdleDatabase) -> None:
     """Draw how often which balance follows which."""
     axes.set_title("balance shifts: what follows how often", loc="left", fontweight="bold")
-    axes.set_xlim(0.0, 1.0)
+    axes.set_xlim(-0.15, 1.15)
     axes.set_ylim(0.0, 1.0)
+    axes.set_aspect("equal")  # arrows bend across their way on the paper
     axes.set_axis_off()
     for name in database.by_balance:
         axes.text(
@@ -151,14 +152,14 @@ def _draw_shift(axes: Axes, name: str, after: str, chance: float) -> None:
     start, end = np.array(_NODES[name]), np.array(_NODES[after])
     if name == after:
         outward = (start - _MIDDLE) / np.linalg.norm(start - _MIDDLE)
-        across = 0.07 * np.array([outward[1], -outward[0]])
-        start, end, bend, apart = start + across, start - across, 1.3, 22.0
-        label = _NODES[name] + 0.2 * outward
+        across = 0.1 * np.array([outward[1], -outward[0]])
+        start, end, bend, apart = start + across, start - across, 1.3, 15.0
     else:
-        way = end - start
         bend, apart = 0.18, 40.0
-        # Nearer to its start: in the middle, those of the arrows inside would meet.
-        label = start + 0.42 * way + 0.15 * np.array([way[1], -way[0]])
+    way = end - start
+    label = (start + end) / 2 + bend / 2 * np.array([way[1], -way[0]])  # the middle of the arc
+    if name == after:
+        label = _NODES[name] + 0.24 * outward
     arrow = FancyArrowPatch(
         (float(start[0]), float(start[1])),
         (float(end[0]), float(end[1])),
@@ -173,7 +174,16 @@ def _draw_shift(axes: Axes, name: str, after: str, chance: float) -> None:
     axes.add_patch(arrow)
     words = f"{chance:.0%}"
     x, y = label.tolist()
-    axes.text(x, y, words, color=_COLORS[name], ha="center", va="center", fontsize=10)
+    axes.text(
+        x,
+        y,
+        words,
+        color=_COLORS[name],
+        ha="center",
+        va="center",
+        fontsize=10,
+        bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"},
+    )
 
 
 def _draw_rests(axes: Axes, database: IdleDatabase, balances: list[str]) -> None:
@@ -215,23 +225,27 @@ def _draw_variations(axes: Axes, database: IdleDatabase) -> None:
         for rows in (rest - rest.mean(0), made)
     )
     step = 6.0 * float(np.concatenate([recorded, made]).std()) or 1.0
-    begins = {"recorded": 0.0, "generated": 1.06 * SHOWN_S}
-    ticks = np.linspace(0.0, SHOWN_S, 5)
+    gap = 0.06 * SHOWN_S
+    begins = {"recorded": 0.0, "generated": len(recorded) / rate + gap}
+    places, labels = [], []
     for (words, begin), rows, color in zip(
         begins.items(), (recorded, made), (TEXT_COLOR, CURVE_STYLES[1][0]), strict=True
     ):
         times = begin + np.arange(len(rows)) / rate
         axes.plot(times, rows - step * np.arange(COMPONENTS), color=color, linewidth=1.2)
         axes.text(begin, 0.92 * step, words, color=SECONDARY_COLOR)
+        seconds = np.arange(0.0, len(rows) / rate + 0.01, TICK_S)
+        places += (begin + seconds).tolist()
+        labels += [f"{each:g}" for each in seconds]
     axes.set_title("small variations while resting", loc="left", fontweight="bold")
     names = [f"component {number + 1}" for number in range(COMPONENTS)]
     axes.set_yticks(-step * np.arange(COMPONENTS), names)
     axes.set_ylim(-(COMPONENTS - 0.4) * step, 1.2 * step)
-    at = np.concatenate([ticks + begin for begin in begins.values()])
-    axes.set_xticks(at, [f"{tick:g}" for tick in np.tile(ticks, 2)])
+    axes.set_xticks(places, labels)
     axes.set_xlabel("time [s]")
     axes.grid(True, axis="x", color=GRID_COLOR, linewidth=0.7)
     axes.spines[["top", "right", "left"]].set_visible(False)
     size = max(each for each in _SCALES if each <= step or each == _SCALES[0])
-    axes.plot([2.1 * SHOWN_S] * 2, [-size, 0.0], color=TEXT_COLOR, linewidth=2.0)
-    axes.text(2.12 * SHOWN_S, -size / 2, f"{size:g}°", va="center", fontsize=9)
+    beside = begins["generated"] + len(made) / rate + gap / 2
+    axes.plot([beside] * 2, [-size, 0.0], color=TEXT_COLOR, linewidth=2.0)
+    axes.text(beside + gap / 3, -size / 2, f"{size:g}°", va="center", fontsize=9)

@@ -1,6 +1,7 @@
 """Holds standing feet in place: bends the legs, and lowers the pelvis if a leg is too short."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -23,13 +24,30 @@ _YAW_RADIUS = 0.06  # [body heights]: converts a foot's rotation to a length
 
 
 class FootLock:
-    """Holds the feet of one character of a height [m]; advanced once a frame."""
+    """Holds the feet of one character; advanced once a frame.
 
-    def __init__(self, legs: LegIK, body_height: float) -> None:
+    Parameters
+    ----------
+    legs
+        Its legs.
+    body_height
+        [m].
+    bending_toes
+        For each leg, whether the foot bends at its toes; None if all do. One that does not turns
+        about its tip, where no joint is.
+    """
+
+    def __init__(
+        self, legs: LegIK, body_height: float, bending_toes: Sequence[bool] | None = None
+    ) -> None:
         self.legs = legs
         self._body_height = body_height
         self._points, self._rest_heights = _rest_foot_points(legs)
-        self.feet = tuple(FootConstraint(body_height, rolls) for rolls in _rolling_feet(legs))
+        bending = bending_toes or [True] * len(legs.joints)
+        self.feet = tuple(
+            FootConstraint(body_height, bends and rolls)
+            for bends, rolls in zip(bending, _rolling_feet(legs), strict=True)
+        )
         self._hip, self._ankle, self._toes = legs.joints[:, [1, 3, 4]].T.tolist()
         offsets = legs.skeleton.rest.translations[legs.joints[:, 2:4]]
         lengths = np.sqrt(np.einsum("lji,lji->lj", offsets, offsets))

@@ -44,7 +44,7 @@ class HandInFront(Protocol):
 
     @property
     def y(self) -> int:
-        """First row [px]."""
+        """First row of the camera's frame that `share` is of [px]."""
 
     @property
     def share(self) -> NDArray[np.uint8]:

@@ -20,7 +20,9 @@ from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
 
 _FLAT_QUANTILE = 0.25  # of the heights of a standing ankle: later the heel rises
-_MAX_SINKING = 0.25  # of a leg's length: ankles always lower than that under rest have other ground
+_MAX_SINKING = (
+    0.03  # of a leg's length: ankles that come lower than that under rest do not stand so
+)
 
 
 def transferred_rotations(clip: Clip, source: Rig, target: Rig, mapping: JointMapping) -> Array:
@@ -100,18 +102,19 @@ def _standing_ankle_height(rig: Rig) -> float | None:
 def _ankle_height(rig: Rig, clip: Clip) -> float:
     """Return the height of standing ankles in a clip [m].
 
-    It is that at rest on the feet, else that of flat feet in the clip; so also in a recording that
-    never comes near the ground of its rest, as those whose hips count from their place at rest.
+    It is that at rest on the feet, else that of flat feet in the clip; so also in a recording whose
+    feet come lower: its rest may be a stride, or its hips count from their place at rest.
     """
     at_rest = _standing_ankle_height(rig)
     feet = [leg.foot for leg in rig.legs]
     clip = clip_in_common_axes(clip, rig)
     heights = clip.poses.globals(rig.skeleton)[:, feet, 1, 3]
-    if at_rest is not None and heights.max() > at_rest - _MAX_SINKING * rig.leg_length:
+    lowest = float(np.median(heights.min(0)))
+    if at_rest is not None and lowest > at_rest - _MAX_SINKING * rig.leg_length:
         return at_rest
     contacts = find_contacts(clip, rig.skeleton, [[foot] for foot in feet])
     if not contacts.any():
-        return float(np.median(heights.min(0)))
+        return lowest
     return float(np.quantile(heights[contacts], _FLAT_QUANTILE))
 
 

@@ -102,16 +102,19 @@ def cards_over(
         mood = _robot(robot.link, robot.label, _finite(robot.mood), scale)
     else:
         portrait = virtual_robot.portrait(step.emotion)
+        # The knob of the mood moves with the portrait, so that the card is drawn as seldom.
         mood = virtual_robot.card(
-            (robot.link, robot.label, robot.mood, scale),
-            lambda: _virtual_robot(robot, portrait, scale),
+            (robot.link, robot.label, scale), lambda: _virtual_robot(robot, portrait, scale)
         )
     cards: dict[Corner, Canvas] = {"bottom right": mood}
     if step.controls.camera_from_table is not None:
         name, command = step.outcome.icon, step.command
         moves = command.activity == "move" or name in ("stand", "walk", "run", "hop")
         weight = command.weight if name == "idle" or step.has_intensity else None
-        cards["bottom left"] = _action(name, moves, command.speed if moves else weight, scale)
+        strength = command.speed if moves else weight
+        # A hand is never still: the card is drawn anew where its bar would move by a pixel.
+        strength = None if strength is None else round(strength, 2)
+        cards["bottom left"] = _action(name, moves, strength, scale)
     if step.close_up is not None and width >= MIN_VIRTUAL_ROBOT_WIDTH:
         cards["top left"] = _close_up(step.close_up, scale)
     sizes = {home: canvas.size for home, canvas in cards.items()}

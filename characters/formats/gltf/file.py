@@ -46,6 +46,7 @@ _SUPPORTED_EXTENSIONS = {
 }
 
 _BASIS = "KHR_texture_basisu"
+_KTX_SOFTWARE = "https://github.com/KhronosGroup/KTX-Software/releases"
 _ONLY_LOOKS = ("KHR_materials_", "KHR_lights_", "EXT_texture_", "KHR_texture_", "MSFT_texture_")
 """How extensions begin without which a character can be drawn, in plainer colours."""
 
@@ -285,7 +286,11 @@ def without_ktx(path: Path, document: Json) -> str:
     """Return what gives a file PNG textures instead of KTX2; the command unpacks meshes too."""
     if _states_vrm(document):
         return "export it with PNG, JPEG or WebP textures"
-    return f"convert it: npx @gltf-transform/cli ktxdecompress {path.name} unpacked.glb"
+    # Without ktx, which no package manager has, the command fails with a riddle.
+    return (
+        f"convert it: npx @gltf-transform/cli ktxdecompress {path.name} unpacked.glb "
+        f"(it calls ktx of KTX-Software: {_KTX_SOFTWARE})"
+    )
 
 
 def _states_vrm(document: Json) -> bool:

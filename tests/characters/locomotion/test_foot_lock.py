@@ -1,6 +1,7 @@
 """Foot lock: a coarser grid of `tests.bench.feet`, and side effects of the lock."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from cubeling.characters import Animator, Character, CharacterCommand, LocomotionIntent
 from cubeling.characters.control.layers import FootLockLayer
 from cubeling.characters.locomotion.steering import SteeringOutput
+from cubeling.characters.motion.motion import RootDelta
 from tests.bench.feet import (
     BODY_HEIGHT_M,
     FRAME_RATE,
@@ -103,6 +105,29 @@ def test_planted_feet_do_not_slide_at_any_frame_rate(human, rate):
     low = (feet[..., 1] - level < 0.004)[1:] & (feet[..., 1] - level < 0.004)[:-1]
     assert low.mean() > 0.3
     assert np.median(speeds[low]) < 2e-3  # [m/s]
+
+
+def test_only_a_foot_that_bends_at_its_toes_is_lowered_to_their_joint(human):
+    """A stiff foot stands on its tip when the joint of its toes is above the ground."""
+    joints = np.arange(len(human.skeleton))
+    for side in ("Left", "Right"):
+        joints[human.skeleton.index(f"{side}Toe")] = human.skeleton.index(f"{side}Foot")
+    stiff = replace(
+        human, meshes=tuple(replace(mesh, joints=joints[mesh.joints]) for mesh in human.meshes)
+    )
+    raised, rest = 0.01 * human.height, human.skeleton.rest
+    pose = replace(rest, translations=rest.translations.copy())
+    pose.translations[0, 1] += raised
+
+    def lowered(character):
+        lock = FootLockLayer(character).lock
+        assert lock is not None
+        for _ in range(12):
+            lock.apply(pose, RootDelta(), [True, True], False, 1 / 30)
+        return [-foot.offset.y for foot in lock.feet]
+
+    assert lowered(human) == pytest.approx([raised] * 2)
+    assert lowered(stiff) == [0.0, 0.0]
 
 
 def test_a_character_without_knees_has_no_foot_lock(walker):

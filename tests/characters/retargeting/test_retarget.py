@@ -310,3 +310,14 @@ def test_a_recording_whose_hips_count_from_their_rest_stands_on_the_ground(human
     at, right = (places(retarget(clip, *arguments), skeleton) for clip in (low, walk))
     feet = [human.anatomy.joints[side + "Foot"] for side in ("left", "right")]
     assert at[:, feet, 1] == pytest.approx(right[:, feet, 1], abs=0.02)
+
+
+def test_a_rest_above_the_ground_of_the_motion_lowers_no_hips(human):
+    """So rest files whose first frame is a stride, or that count hips from elsewhere."""
+    skeleton, walk, hips = human.skeleton, human.clips["Walk"], human.anatomy.joints["hips"]
+    lifted = skeleton.rest.translations.copy()
+    lifted[hips, 1] += 0.04 * human.height
+    above = replace(skeleton, rest=replace(skeleton.rest, translations=lifted))
+    made = retarget(walk, above, human.anatomy, skeleton, human.anatomy)
+    heights = places(made, skeleton)[:, hips, 1] - places(walk, skeleton)[:, hips, 1]
+    assert np.abs(heights).max() < 1e-3 * human.height  # 22e-3 by the height of the rest
