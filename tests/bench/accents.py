@@ -13,10 +13,14 @@ emphasis
     range but as loud as ever. Every syllable of a chosen word is emphasised, so that any accent in
     it is right, and one is enough.
 
+telephone
+    The resynthesis from 300 to 3400 Hz, at 8 kHz, with noise 15 dB below it.
+
 Of the others, an accent is right within 50 ms of a true one, each once. "phones" says whether the
-detector was told them. Loudness alone makes half of the strength, so that 0.5 finds loud words,
-too; the stricter threshold finds the emphasised ones only. Exits with 1 if the F1 of bursts or
-resynthesis at the default threshold, or of emphasis at the stricter one, is below 0.95.
+detector was told them. The default threshold finds what people hear in running speech, which is
+more than these emphasised syllables; loudness alone makes half of the strength, so that 0.5 finds
+loud words, too, and the stricter threshold the emphasised ones only. Exits with 1 if the F1 of
+bursts, resynthesis or telephone at 0.5, or of emphasis at the stricter one, is below 0.95.
 """
 
 import subprocess
@@ -98,12 +102,19 @@ def main() -> int:
         sets = {
             "bursts": list(bursts(np.random.default_rng(1), 60)),
             "resynthesis": list(resynthesised(voice, np.random.default_rng(2))),
+            "telephone": [],
             "emphasis": list(emphasised(voice, np.random.default_rng(3))),
         }
+    sets["telephone"] = [
+        (telephoned(speech, np.random.default_rng(n)), true)
+        for n, (speech, true) in enumerate(sets["resynthesis"])
+    ]
     for name, told, threshold, decides in (
         ("bursts", False, 0.5, True),
         ("resynthesis", False, 0.5, True),
         ("resynthesis", True, 0.5, True),
+        ("telephone", False, 0.5, True),
+        ("resynthesis", True, AccentSettings().threshold, False),
         ("emphasis", True, 0.5, False),
         ("emphasis", False, STRICTER, True),
         ("emphasis", True, STRICTER, True),
@@ -271,6 +282,21 @@ def spoken_ssml(words: Sequence[str], chosen: set[int], language: str) -> tuple[
         file.flush()
         speech = read_speech(Path(file.name))
     return speech.samples, speech.rate
+
+
+def telephoned(speech: Speech, random: np.random.Generator) -> Speech:
+    """Return a speech as a telephone lets it through, with noise 15 dB below it."""
+    count, rate = len(speech.samples), 8000
+    keep = int(count * rate / speech.rate)
+    spectra = [np.fft.rfft(each) for each in (speech.samples, random.normal(0.0, 1.0, count))]
+    frequencies = np.fft.rfftfreq(count, 1 / speech.rate)
+    band = (frequencies > 300) & (frequencies < 3400)
+    own, noise = (
+        np.fft.irfft((spectrum * band)[: keep // 2 + 1], keep) * keep / count
+        for spectrum in spectra
+    )
+    noise *= np.sqrt(np.mean(own**2) / np.mean(noise**2)) * 10 ** (-15 / 20)
+    return replace(speech, samples=(own + noise).astype(np.float32), rate=rate)
 
 
 def around(start: float, end: float | None = None) -> tuple[float, float]:
