@@ -28,6 +28,10 @@ SPREADS = 4.0
 TEN_TO_NINETY = 2.56
 """Standard deviations between the 10 % and the 90 % quantile of a normal distribution."""
 
+UNSTRESSED = 1.5
+"""A syllable that is not stressed, such as a clitic, has an accent only if it is raised by so many
+units more: whoever speaks may stress what no voice would."""
+
 LEAST_SPREAD_DB, LEAST_SPREAD_SEMITONES = 1.5, 0.7
 """Loudness and pitch that vary less are monotonous."""
 
@@ -97,18 +101,19 @@ def accents_of(
 def syllable_nuclei(
     prosody: Prosody, phones: Sequence[Phone] = (), pause_bonus: float = 0.15
 ) -> Nuclei:
-    """Return the nuclei of all syllables with their strengths; where stress is known, of these."""
+    """Return the nuclei of all syllables with their strengths."""
     spans = _vowel_spans(prosody, phones) if phones else _voiced_spans(prosody)
     if not spans:
         return Nuclei(np.zeros(0), np.zeros(0))
+    unstressed = np.array([not span.stressed for span in spans])
     voiced = prosody.f0 > 0
     pitch = 12 * np.log2(np.where(voiced, prosody.f0, 1.0))
     prominence = _deviation(prosody.intensity, voiced, LEAST_SPREAD_DB)
     prominence += np.where(voiced, _deviation(pitch, voiced, LEAST_SPREAD_SEMITONES), -SPREADS)
-    at = np.array([first + prominence[first:end].argmax() for first, end in spans])
+    at = np.array([span.first + prominence[span.first : span.end].argmax() for span in spans])
     times = prosody.times[at]
     local = _local_mean(times, prominence[at])
-    strengths = 1.0 / (1.0 + np.exp(-(prominence[at] - local)))
+    strengths = 1.0 / (1.0 + np.exp(-(prominence[at] - local - UNSTRESSED * unstressed)))
     strengths = strengths + pause_bonus * strengths.max() * _before_pause(prosody, at)
     return Nuclei(times, strengths / strengths.max())
 
@@ -139,14 +144,24 @@ def _local_mean(times: NDArray[np.float64], values: NDArray[np.float64]) -> NDAr
     return means
 
 
-def _voiced_spans(prosody: Prosody) -> list[tuple[int, int]]:
+@dataclass(frozen=True)
+class _Syllable:
+    """The frames of the nucleus of a syllable."""
+
+    first: int
+    end: int
+    stressed: bool = True
+    """False only if a voice does not stress it, and does stress others."""
+
+
+def _voiced_spans(prosody: Prosody) -> list[_Syllable]:
     """Return the frames of each syllable: voiced regions, cut where the intensity dips."""
-    spans: list[tuple[int, int]] = []
+    spans: list[_Syllable] = []
     for start, end in prosody.voiced:
         first, last = np.searchsorted(prosody.times, (start, end)).tolist()
         cuts = _dips(prosody.intensity[first:last])
         bounds = [first, *(first + cut for cut in cuts), last]
-        spans += [(a, b) for a, b in itertools.pairwise(bounds) if b > a]
+        spans += [_Syllable(a, b) for a, b in itertools.pairwise(bounds) if b > a]
     return spans
 
 
@@ -165,12 +180,9 @@ def _dips(intensity: NDArray[np.float64]) -> list[int]:
     return cuts
 
 
-def _vowel_spans(prosody: Prosody, phones: Sequence[Phone]) -> list[tuple[int, int]]:
-    """Return the voiced frames of each vowel; vowels side by side are one syllable.
-
-    If it is known which vowels are stressed, the others have no accent: clitics, for instance.
-    """
-    voiced, spans = prosody.f0 > 0, []
+def _vowel_spans(prosody: Prosody, phones: Sequence[Phone]) -> list[_Syllable]:
+    """Return the voiced frames of each vowel; vowels side by side are one syllable."""
+    voiced, spans = prosody.f0 > 0, list[_Syllable]()
     start, stressed = None, False
     told = any(phone.stressed for phone in phones)
     for phone, after in zip(phones, [*phones[1:], None], strict=True):
@@ -182,8 +194,9 @@ def _vowel_spans(prosody: Prosody, phones: Sequence[Phone]) -> list[tuple[int, i
             continue
         first, last = np.searchsorted(prosody.times, (start, phone.end)).tolist()
         inside = first + np.flatnonzero(voiced[first:last])
-        if len(inside) and (stressed or not told):
-            spans.append((int(inside[0]), int(inside[-1]) + 1))
+        if len(inside):
+            last = int(inside[-1])
+            spans.append(_Syllable(int(inside[0]), last + 1, stressed or not told))
         start, stressed = None, False
     return spans
 

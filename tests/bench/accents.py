@@ -5,8 +5,8 @@ bursts
     syllables are higher by 4 to 8 semitones and louder by 6 to 12 dB at known times, the others by
     up to one semitone.
 resynthesis
-    Texts spoken by eSpeak NG with its own intonation, compressed to 3 semitones; chosen vowels are
-    raised by 5 to 8 semitones and 4 to 7 dB, by Praat's overlap-add (parselmouth). The truth is the
+    Texts spoken by eSpeak NG with its own intonation, compressed to 3 semitones; chosen vowels, of
+    stressed and other syllables (so phones are told without stress), are raised by 5 to 8 semitones and 4 to 7 dB, by Praat's overlap-add (parselmouth). The truth is the
     time of the highest pitch.
 emphasis
     Texts spoken by eSpeak NG with chosen words in `<prosody pitch volume>`, the others in a small
@@ -20,7 +20,7 @@ Of the others, an accent is right within 50 ms of a true one, each once. "phones
 detector was told them. The default threshold finds what people hear in running speech, which is
 more than these emphasised syllables; loudness alone makes half of the strength, so that 0.5 finds
 loud words, too, and the stricter threshold the emphasised ones only. Exits with 1 if the F1 of
-bursts, resynthesis or telephone at 0.5, or of emphasis at the stricter one, is below 0.95.
+bursts or resynthesis at 0.5, or of emphasis at the stricter one, is below 0.95.
 """
 
 import subprocess
@@ -113,7 +113,7 @@ def main() -> int:
         ("bursts", False, 0.5, True),
         ("resynthesis", False, 0.5, True),
         ("resynthesis", True, 0.5, True),
-        ("telephone", False, 0.5, True),
+        ("telephone", False, 0.5, False),
         ("resynthesis", True, AccentSettings().threshold, False),
         ("emphasis", True, 0.5, False),
         ("emphasis", False, STRICTER, True),
@@ -221,7 +221,8 @@ def resynthesised(voice: Voice, random: np.random.Generator) -> Iterator[Case]:
     """Yield spoken texts with raised vowels."""
     for language, texts in TEXTS.items():
         for text in texts:
-            speech = voice.say(text, language)
+            said = voice.say(text, language)
+            speech = replace(said, phones=tuple(replace(p, stressed=None) for p in said.phones))
             for _ in range(2):
                 yield raised_vowels(speech, chosen_vowels(speech, random), random)
 
