@@ -84,7 +84,8 @@ from cubeling.characters.synthesis.idle.motion_texture import StretchStream as S
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors as PostureVectors
 from cubeling.characters.synthesis.idle.recordings import (
     BALANCES as BALANCES,
-    read_standing as read_standing,
+    borrow_shifts as borrow_shifts,
+    read_parts as read_parts,
 )
 from cubeling.characters.synthesis.idle.storage import (
     Person as Person,

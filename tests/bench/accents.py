@@ -6,8 +6,8 @@ bursts
     up to one semitone.
 resynthesis
     Texts spoken by eSpeak NG with its own intonation, compressed to 3 semitones; chosen vowels, of
-    stressed and other syllables (so phones are told without stress), are raised by 5 to 8 semitones and 4 to 7 dB, by Praat's overlap-add (parselmouth). The truth is the
-    time of the highest pitch.
+    stressed and other syllables (so phones are told without stress), are raised by 5 to 8 semitones
+    and 4 to 7 dB, by Praat's overlap-add (parselmouth). The truth is the time of the highest pitch.
 emphasis
     Texts spoken by eSpeak NG with chosen words in `<prosody pitch volume>`, the others in a small
     range but as loud as ever. Every syllable of a chosen word is emphasised, so that any accent in
