@@ -30,8 +30,9 @@ repeats
     most alike, ÷ how far she moves within a second (median): 0 would be a repetition.
 
 Exits with 1 if a bar of issue 15 is missed: named in 3 × chance and within 10 points of recorded
-motion, AUC ≤ 0.65, histograms nearer to her than people are to each other, no repeated second; or that of issue 56: as many
-shifts as in the other half within 20 % in the median, and within a factor of 2 for everyone.
+motion, AUC ≤ 0.65, histograms nearer to her than people are to each other, no repeated second; or
+that of issue 56: as many shifts as in the other half within 20 % in the median, and within a factor
+of 2 for everyone.
 """
 
 import sys
