@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.speech import Accent, Word
@@ -133,7 +134,7 @@ class LabelAgreement:
         return cls(precision, recall, matthews(classes[0], classes[1]))
 
 
-def _words_with(words: Sequence[Word], times: Sequence[float]) -> np.ndarray:
+def _words_with(words: Sequence[Word], times: Sequence[float]) -> NDArray[np.bool_]:
     """Return which words have one of these times in them, (words,); else the nearest word has."""
     starts, ends = (np.array([getattr(w, name) for w in words]) for name in ("start", "end"))
     found = np.zeros(len(words), bool)

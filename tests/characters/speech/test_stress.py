@@ -1,5 +1,6 @@
 """Stress marks of a voice, and accents that go by them."""
 
+import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
@@ -58,14 +59,14 @@ def test_a_clitic_has_no_accent_though_it_is_as_loud(buzz):
 
 def test_words_are_stressed_as_a_voice_stresses_them():
     said = Speech(
-        None, 1, "to gusta", "", (Word("to", 0, 0.2), Word("gusta", 0.2, 0.7)),
+        np.zeros(1, np.float32), 1, "to gusta", "", (Word("to", 0, 0.2), Word("gusta", 0.2, 0.7)),
         with_stress(phones_of(["t", "o", "g", "u", "s", "t", "a"]), "to gˈusta"),
     )  # fmt: skip
-    own = Speech([0.0] * 20, 10, "gusta", "", (Word("Gusta", 1.0, 2.0),))
+    own = Speech(np.zeros(20, np.float32), 10, "gusta", "", (Word("Gusta", 1.0, 2.0),))
     vowels = [p for p in stressed_like(own, said).phones if p.stressed is not None]
     assert [(p.symbol, p.stressed) for p in vowels] == [("u", True), ("a", False)]
     assert vowels[0].start == pytest.approx(1.2)
-    labelled = Speech([0.0] * 20, 10, "gusta", "", own.words, (
+    labelled = Speech(np.zeros(20, np.float32), 10, "gusta", "", own.words, (
         Phone("g", 1.0, 1.1), Phone("ʊ", 1.1, 1.5), Phone("s", 1.5, 1.6), Phone("ə", 1.6, 2.0),
     ))  # fmt: skip
     assert [p.stressed for p in stressed_like(labelled, said).phones] == [None, True, None, False]
