@@ -78,7 +78,7 @@ def _elan(marks: Sequence[GestureMarks]) -> Element:
                 milliseconds = f"{1000 * time:.0f}"
                 SubElement(order, "TIME_SLOT", TIME_SLOT_ID=slot, TIME_VALUE=milliseconds)
             note = SubElement(tier, "ANNOTATION")
-            own = SubElement(note, "ALIGNABLE_ANNOTATION", ANNOTATION_ID=f"a{count}", **slots)
+            own = SubElement(note, "ALIGNABLE_ANNOTATION", {"ANNOTATION_ID": f"a{count}", **slots})
             SubElement(own, "ANNOTATION_VALUE").text = each.word
     SubElement(root, "LINGUISTIC_TYPE", LINGUISTIC_TYPE_ID="phase", TIME_ALIGNABLE="true")
     return root
@@ -91,7 +91,7 @@ def _anvil(marks: Sequence[GestureMarks]) -> Element:
         track = SubElement(body, "track", name=name, type="primary")
         for index, each in enumerate(intervals):
             times = {"start": f"{each.start:g}", "end": f"{each.end:g}"}
-            own = SubElement(track, "el", index=str(index), **times)
+            own = SubElement(track, "el", {"index": str(index), **times})
             SubElement(own, "attribute", name="phase").text = each.word
     return root
 
@@ -101,7 +101,7 @@ def _bml(marks: Sequence[GestureMarks]) -> Element:
     for number, each in enumerate(marks, 1):
         times = zip(SYNCS, vars(each).values(), strict=True)
         points = {sync: f"{time:g}" for sync, time in times if time is not None}
-        SubElement(root, "gesture", id=f"gesture{number}", lexeme="BEAT", **points)
+        SubElement(root, "gesture", {"id": f"gesture{number}", "lexeme": "BEAT", **points})
     return root
 
 
