@@ -68,8 +68,8 @@ class SpeechProfile:
     visemes: str = "oculus"
     """The set of visemes."""
 
-    accent_threshold: float = 0.5
-    """Least strength of an accent, as a share of the strongest, 0…1."""
+    accent_threshold: float = 0.35
+    """Least strength of an accent, as a share of the strongest, 0…1; see `AccentSettings`."""
 
     accent_distance: float = 0.3
     """Least time between two accents [s]."""

@@ -43,8 +43,19 @@ from cubeling.characters.synthesis.gestures.graph import (
     GestureGraph as GestureGraph,
     sweep as sweep,
 )
-from cubeling.characters.synthesis.gestures.learning import learn_gestures as learn_gestures
+from cubeling.characters.synthesis.gestures.learning import (
+    find_gestures as find_gestures,
+    learn_gestures as learn_gestures,
+    library_of as library_of,
+)
 from cubeling.characters.synthesis.gestures.library import GestureLibrary as GestureLibrary
+from cubeling.characters.synthesis.gestures.marks import (
+    Agreement as Agreement,
+    GestureMarks as GestureMarks,
+    marks_of as marks_of,
+)
+from cubeling.characters.synthesis.gestures.marks_files import read_marks as read_marks
+from cubeling.characters.synthesis.gestures.marks_writing import write_marks as write_marks
 from cubeling.characters.synthesis.gestures.plan import PlannedGesture as PlannedGesture
 from cubeling.characters.synthesis.graphs.building import (
     analyse as analyse,
@@ -73,7 +84,8 @@ from cubeling.characters.synthesis.idle.motion_texture import StretchStream as S
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors as PostureVectors
 from cubeling.characters.synthesis.idle.recordings import (
     BALANCES as BALANCES,
-    read_standing as read_standing,
+    borrow_shifts as borrow_shifts,
+    read_parts as read_parts,
 )
 from cubeling.characters.synthesis.idle.storage import (
     Person as Person,

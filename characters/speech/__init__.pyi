@@ -6,6 +6,10 @@ from cubeling.characters.control.speech_profile import (
 )
 from cubeling.characters.face.complexion import Complexion as Complexion, blood_of as blood_of
 from cubeling.characters.face.visemes.sets import viseme_sets as viseme_sets
+from cubeling.characters.speech.accent_labels import (
+    LabelAgreement as LabelAgreement,
+    read_accent_labels as read_accent_labels,
+)
 from cubeling.characters.speech.accents import (
     AccentSettings as AccentSettings,
     accents_of as accents_of,
@@ -33,11 +37,13 @@ from cubeling.characters.speech.speech import (
     Speech as Speech,
     Utterance as Utterance,
 )
+from cubeling.characters.speech.stress import stressed_like as stressed_like
 from cubeling.characters.speech.tagged_text import (
     TEXT_FILE as TEXT_FILE,
     TaggedText as TaggedText,
 )
 from cubeling.characters.speech.textgrid import (
+    Interval as Interval,
     read_textgrid as read_textgrid,
     textgrid_of as textgrid_of,
     with_textgrid as with_textgrid,

@@ -1,6 +1,7 @@
 """Phones: classes of the International Phonetic Alphabet, and ARPAbet."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 from cubeling.characters.speech.speech import SILENCE, Phone
@@ -112,7 +113,8 @@ def fill_pauses(phones: Sequence[Phone], duration: float) -> tuple[Phone, ...]:
     for phone in [*phones, Phone(SILENCE, duration, duration)]:
         start, end = min(max(phone.start, at), duration), min(phone.end, duration)
         pieces = [Phone(SILENCE, at, start)] if start > at + 1e-6 else []
-        pieces += [Phone(phone.symbol, start if pieces else at, end)] if end > start else []
+        begin = start if pieces else at
+        pieces += [replace(phone, start=begin, end=end)] if end > start else []
         for piece in pieces:
             if filled and piece.symbol == SILENCE == filled[-1].symbol:
                 filled[-1] = Phone(SILENCE, filled[-1].start, piece.end)

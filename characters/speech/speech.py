@@ -25,6 +25,9 @@ class Phone:
     end: float
     """When it ends [s]."""
 
+    stressed: bool | None = None
+    """Whether it is the vowel of a stressed syllable; None if that is not known."""
+
 
 @dataclass(frozen=True)
 class Word:

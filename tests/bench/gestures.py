@@ -22,6 +22,10 @@ jump
 Then: the intensity rule on and off, the gesture slider, Table 4.2, hands that meet the body, and
 how many authored strokes are found again by `cubeling gesture learn`. Exits with 1 if a bar of
 issue 16 is missed.
+
+`python -m tests.bench.gestures FOLDER` instead compares what is found in the clips of a folder with
+its marks.csv, in all clips and in every other one; exits with 1 if a bar of issue 56 is missed:
+misses ≤ 5 %, F1 of strokes (half of their time shared) ≥ 0.85, apex within 0.1 s in ≥ 70 %.
 """
 
 import sys
@@ -38,13 +42,16 @@ from rich.table import Table
 
 from cubeling.characters import Character, Clip
 from cubeling.characters.body.capsules import CapsuleBody
+from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.speech.prosody import utterance_of
 from cubeling.characters.speech.speech import Accent
 from cubeling.characters.speech.voices import VoiceError, espeak
 from cubeling.characters.synthesis.gestures.graph import sweep
-from cubeling.characters.synthesis.gestures.learning import RATE_HZ, analyse
+from cubeling.characters.synthesis.gestures.learning import RATE_HZ, find_gestures
 from cubeling.characters.synthesis.gestures.library import GestureLibrary
+from cubeling.characters.synthesis.gestures.marks import Agreement, marks_of
+from cubeling.characters.synthesis.gestures.marks_files import read_marks
 from cubeling.characters.synthesis.gestures.plan import GesturePlan
 from cubeling.characters.synthesis.gestures.planning import GesturePlanner, GestureSettings
 
@@ -215,7 +222,8 @@ def found_again(library: GestureLibrary) -> tuple[int, int, int]:
         turns = np.concatenate([rests[0], recording.turns, rests[1]])
         clip = Clip(recording.name, RATE_HZ, library.poses(turns), loop=False)
         apices = [
-            each.apex - 30 for each in analyse(clip, library.skeleton, library.anatomy).phrases
+            each.apex - 30
+            for each in find_gestures(clip, library.skeleton, library.anatomy).phrases
         ]
         for phrase in library.phrases:
             if phrase.recording == number:
@@ -254,9 +262,36 @@ def planned(
     return good, [r.plan for r in results]
 
 
+def against_marks(folder: Path, console: Console) -> int:
+    """Print how gestures found in clips agree with the marks beside them; return an exit code."""
+    human, table = Character.load("human"), read_marks(folder / "marks.csv")
+    clips = read_motions([str(folder)], human)
+    agreements: list[Agreement] = []
+    for clip in clips:
+        found = find_gestures(clip, human.skeleton, human.anatomy)
+        if not found.phrases:
+            console.print(f"{clip.name}: {found.reason}")
+        agreements.append(Agreement.of(marks_of(table, clip.name), found.marks))
+    rows = Table(title=f"{len(clips)} clips of {folder.name}")
+    for heading in ("clips", "missed", "F1 overlap", "F1 half", "F1 time", "apex ≤ 0.1 s"):
+        rows.add_column(heading, justify="right")
+    parts = {"all": slice(None), "even": slice(0, None, 2), "odd": slice(1, None, 2)}
+    for name, part in parts.items():
+        own = sum(agreements[part], start=Agreement())
+        scores = own.overlap_f1, own.same_f1, own.time_f1
+        shares = f"{own.miss_share:.1%}", *(f"{each:.2f}" for each in scores)
+        rows.add_row(name, *shares, f"{own.apex_share:.1%}")
+    console.print(rows)
+    whole = sum(agreements, start=Agreement())
+    good = whole.miss_share <= 0.05 and whole.same_f1 >= 0.85 and whole.apex_share >= 0.7
+    return int(not good)
+
+
 def main() -> int:
     """Print the tables and return an exit code."""
     console = Console(width=118)
+    if len(sys.argv) > 1:
+        return against_marks(Path(sys.argv[1]), console)
     library = bundled()
     sources = {
         "random, mean gap 0.5 s": [random_accents(seed, 0.5) for seed in range(SEEDS)],

@@ -14,6 +14,7 @@ from rich.table import Table
 
 from cubeling.app.command_group import CommandGroup, former_spellings
 from cubeling.app.commands.make.gesture_library import learn, library
+from cubeling.app.commands.make.gesture_marks import marks
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character
@@ -34,6 +35,7 @@ app = CommandGroup(
 )
 app.command()(learn)
 app.command()(library)
+app.command()(marks)
 
 FolderOption = Annotated[
     Path, typer.Option("--folder", help="Where your own gestures are.", show_default=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from contextlib import ExitStack
 from dataclasses import replace
 from importlib import resources
@@ -48,11 +47,15 @@ def learn(
     character: Annotated[
         str, typer.Option(help="Whose skeleton they get: bundled, or a .glb file.")
     ] = "human",
+    marks: Annotated[
+        Path | None,
+        typer.Option(help="Times that a person marked: .csv, .eaf, .anvil or .bml."),
+    ] = None,
 ) -> None:
     """Learn beat gestures: their phases, their apices and how strong they are.
 
-    Gestures are found without marks: what hands do between two rests. Recordings without any are
-    left out.
+    Without marks, gestures are what hands do between two rests; a clip that is cut tightly rests
+    in its edges. Recordings without any are left out, with the reason.
 
     Example: cubeling gesture learn talk.bvh -o anna.gestures
     """
@@ -61,18 +64,25 @@ def learn(
     check_character(character)
     from cubeling.characters import Character, read_motions
     from cubeling.characters.model import with_root_joint
-    from cubeling.characters.motion import learn_gestures
+    from cubeling.characters.motion import find_gestures, library_of, marks_of, read_marks
 
+    table = {} if marks is None else read_marks(marks)
     body = with_root_joint(Character.load(character))
     console = Console()
     with console.status("reading"):
         clips = read_motions(recordings, body)
-        library = learn_gestures(clips, body.skeleton, body.anatomy)
-    counts = Counter(library.recordings[each.recording].name for each in library.phrases)
-    rows = _table("Recordings", "recording", "length", "phrases")
-    for clip in clips:
-        rows.add_row(escape(clip.name), f"{clip.duration:.1f} s", f"{counts[clip.name]}")
+        found = [
+            find_gestures(clip, body.skeleton, body.anatomy, marks_of(table, clip.name))
+            for clip in clips
+        ]
+    rows = gesture_table("Recordings", "recording", "length", "phrases")
+    for clip, each in zip(clips, found, strict=True):
+        rows.add_row(escape(clip.name), f"{clip.duration:.1f} s", f"{len(each.phrases)}")
     console.print(rows)
+    for each in found:
+        if not each.phrases:
+            console.print(f"{escape(each.name)}: no gesture; {each.reason}", highlight=False)
+    library = library_of(found, body.skeleton, body.anatomy)
     describe(console, library)
     library.save(target)
     console.print(f"[bold]{escape(str(target))}[/] is written", soft_wrap=True, highlight=False)
@@ -114,14 +124,16 @@ def describe(console: Console, library: GestureLibrary) -> None:
     console.print(
         f"{len(library.phrases)} gesture phrases in {seconds:.0f} s of motion", highlight=False
     )
-    rows = _table("Strength", "hand", "phrases", "weakest", "25 %", "median", "75 %", "strongest")
+    rows = gesture_table(
+        "Strength", "hand", "phrases", "weakest", "25 %", "median", "75 %", "strongest"
+    )
     for hand in ("left", "right", "both", "all"):
         own = [e.strength for e in library.phrases if hand in (e.hand, "all")]
         if own:
             quartiles = np.quantile(own, (0.0, 0.25, 0.5, 0.75, 1.0)).tolist()
             rows.add_row(hand, f"{len(own)}", *(f"{each:.1f}" for each in quartiles))
     console.print(rows)
-    rows = _table("Graph", "threshold", "branches", "connected", "branches of these")
+    rows = gesture_table("Graph", "threshold", "branches", "connected", "branches of these")
     for row in sweep(library, SWEPT_THRESHOLDS):
         rows.add_row(
             f"{row.threshold:g}",
@@ -186,7 +198,8 @@ def _file(library: Path) -> Path:
     return Path(str(resources.files("cubeling.characters") / "assets" / f"{library}.gestures"))
 
 
-def _table(title: str, *headings: str) -> Table:
+def gesture_table(title: str, *headings: str) -> Table:
+    """Return an empty table with these headings; all but the first are numbers."""
     rows = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD)
     for number, heading in enumerate(headings):
         rows.add_column(heading, justify="right" if number else "left")

@@ -22,6 +22,7 @@ from cubeling.app.commands.output import (
     needs_matplotlib,
 )
 from cubeling.app.counted import quantity
+from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character, check_motions
 from cubeling.characters.motion import Alignment
 
@@ -49,10 +50,15 @@ def learn(
     align: Annotated[
         Alignment, typer.Option(help="What places a recording; see docs/idle.md.")
     ] = "feet",
+    shifts_from: Annotated[
+        Path | None,
+        typer.Option(help="Another person's .idle file, whose balance shifts she borrows."),
+    ] = None,
 ) -> None:
     """Learn the idle motion of a person: where she rests, and how she shifts her balance.
 
-    Rests, balance shifts and small variations are found without marks. A recording with the word
+    Rests, balance shifts and small variations are found without marks, in the parts between two
+    steps; of somebody who sits, in how the trunk leans. A recording with the word
     of an emotion before it, such as happy=FILE, plays while the character feels so.
 
     Example: cubeling idle learn anna.bvh -o anna.idle
@@ -66,18 +72,27 @@ def learn(
     from cubeling.characters.motion import (
         IdleDatabase,
         PostureVectors,
-        read_standing,
+        borrow_shifts,
+        load_person,
+        read_parts,
         save_person,
+        skeleton_identity,
     )
 
+    lender = None if shifts_from is None else load_person(shifts_from)
     body = with_root_joint(Character.load(character))
     console = Console()
     with console.status("reading"):
         found = tuple(
-            read_standing(clip, body.skeleton, body.anatomy, feeling, align)
+            part
             for name, feeling in felt
             for clip in read_motions([name], body)
+            for part in read_parts(clip, body.skeleton, body.anatomy, feeling, align)
         )
+    if lender is not None:
+        if skeleton_identity(lender[0]) != skeleton_identity(body.skeleton):
+            raise AppError(f"'{shifts_from}' is on another skeleton: learn it with --character too")
+        found = borrow_shifts(found, lender[2])
     person = body.skeleton, body.anatomy, found
     vectors = PostureVectors.of(body.skeleton, body.anatomy)
     describe(console, person, IdleDatabase.of(found, vectors))
@@ -180,6 +195,7 @@ def describe(console: Console, person: Person, database: IdleDatabase, mood: str
     console.print(rows)
     if not database.shifts:
         console.print(
-            "[yellow]![/] She never shifts her balance: her character stays where it stands.",
+            "[yellow]![/] She never shifts her balance: her character stays where it stands. "
+            "Shifts can be borrowed: --shifts-from FILE",
             highlight=False,
         )

@@ -26,10 +26,13 @@ from cubeling.characters.speech import DEFAULT_PROFILE
 
 if TYPE_CHECKING:
     from cubeling.characters.motion import PlannedGesture
-    from cubeling.characters.speech import Accent, AccentSettings, Speech
+    from cubeling.characters.speech import Accent, AccentSettings, Interval, Speech
 
 MAX_PLOT_S = 120.0
 """Longest speech that is plotted [s]."""
+
+COMPARED_THRESHOLDS = (0.2, 0.3, 0.4, 0.5, 0.6)
+"""Thresholds at which accents are compared with labels, beside the chosen one."""
 
 app = CommandGroup("Look at recorded speech: its pitch, accents, words and phones.")
 
@@ -48,6 +51,13 @@ def show(
     threshold: Annotated[
         float, typer.Option(min=0.0, max=1.0, help="Least strength of an accent.")
     ] = DEFAULT_PROFILE.accent_threshold,
+    labels: Annotated[
+        Path | None,
+        typer.Option(
+            help="Compare with accents that people heard: a .csv of times, or a TextGrid with a "
+            "tier 'accents'."
+        ),
+    ] = None,
     character: Annotated[
         str, typer.Option(help="Whose gestures are plotted: bundled, or a .glb file.")
     ] = "human",
@@ -57,7 +67,8 @@ def show(
     """Show a recording: duration, speech rate, pitch and pitch accents.
 
     The plot also shows waveform, intensity and voicing, words and phones if the text is known, and
-    the gestures with which a character would say it.
+    the gestures with which a character would say it. With labels, it prints precision, recall
+    and F1 of accents, and the correlation of accented words, for several thresholds.
     It needs matplotlib: pip install matplotlib
 
     Example: cubeling speech show talk.wav --text "Hello there" -o talk.png
@@ -67,17 +78,26 @@ def show(
     if text is not None and textgrid is not None:
         raise AppError("give --text or --textgrid, not both")
     console = Console()
-    from cubeling.characters.speech import AccentSettings, read_speech, read_textgrid, with_textgrid
+    from cubeling.characters.speech import (
+        AccentSettings,
+        read_accent_labels,
+        read_speech,
+        read_textgrid,
+        with_textgrid,
+    )
 
+    labelled = None if labels is None else read_accent_labels(labels)
     speech = read_speech(file)
     if output is not None and speech.duration > MAX_PLOT_S:
         raise AppError(f"a plot shows up to {MAX_PLOT_S:g} s, and '{file}' is longer: cut it")
     if textgrid is not None:
-        speech = with_textgrid(speech, read_textgrid(textgrid))
+        speech = _with_stress(with_textgrid(speech, read_textgrid(textgrid)), language)
     elif text is not None:
         speech = align_speech(speech, text, language, console)
     settings = AccentSettings(threshold)
     accents = describe(console, speech, settings)
+    if labelled is not None:
+        _print_agreement(console, speech, labelled, threshold)
     if output is None:
         return
     with needs_matplotlib():
@@ -88,6 +108,43 @@ def show(
     ]
     save_plot(output, speech, file.name, marks, settings)
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+
+
+def _with_stress(speech: Speech, language: str) -> Speech:
+    """Return a speech whose words are stressed as a voice stresses them, if there is a voice."""
+    from cubeling.characters.speech import VoiceError, espeak, say, stressed_like
+
+    try:
+        with espeak() as voice:
+            return stressed_like(speech, say(voice, speech.text, language))
+    except VoiceError:
+        return speech
+
+
+def _print_agreement(
+    console: Console, speech: Speech, labels: Sequence[Interval], threshold: float
+) -> None:
+    """Print how accents agree with those that people heard, at several thresholds."""
+    from cubeling.characters.speech import (
+        AccentSettings,
+        LabelAgreement,
+        accents_of,
+        measure_prosody,
+    )
+
+    prosody = measure_prosody(speech.samples, speech.rate)
+    title = f"beside {quantity(len(labels), 'label')} of people"
+    rows = Table(box=SIMPLE_HEAD, title=title, title_justify="left")
+    for heading in ("threshold", "accents", "precision", "recall", "F1", "words' MCC"):
+        rows.add_column(heading, justify="right")
+    for each in sorted({*COMPARED_THRESHOLDS, threshold}):
+        accents = accents_of(prosody, speech.phones, AccentSettings(each))
+        found = LabelAgreement.of(labels, accents, speech.words)
+        words = "no words" if found.words is None else f"{found.words:.2f}"
+        scores = [f"{score:.2f}" for score in (found.precision, found.recall, found.f1)]
+        style = "bold" if each == threshold else ""
+        rows.add_row(f"{each:g}", f"{len(accents)}", *scores, words, style=style)
+    console.print(rows)
 
 
 def planned_gestures(

@@ -179,10 +179,10 @@ def _time_phones(
     """Return phones with the times of a recording; one may be empty."""
     ends = np.append(bounds[1:], len(frames))
     return [
-        Phone(
-            phone.symbol,
-            float(frames[start] * HOP_S),
-            float((frames[end - 1] + 1) * HOP_S) if end > start else float(frames[start] * HOP_S),
+        replace(
+            phone,
+            start=float(frames[start] * HOP_S),
+            end=float((frames[end - 1 if end > start else start] + (end > start)) * HOP_S),
         )
         for phone, start, end in zip(phones, bounds.tolist(), ends.tolist(), strict=True)
     ]

@@ -49,6 +49,8 @@ class Engine:
         if self.rate <= 0:
             raise OSError("eSpeak NG does not find its data")
         self._samples = 0
+        self._transcribed = self._library.espeak_TextToPhonemes
+        self._transcribed.restype = ctypes.c_char_p
         self._callback = _CALLBACK(self._take)  # kept, or it would be freed
         self._library.espeak_SetSynthCallback(self._callback)
 
@@ -68,9 +70,17 @@ class Engine:
         write({"rate": self.rate})
         self._samples = 0
         text = str(request["text"]).replace("\0", " ").encode()
+        self._transcribe(text)
         self._library.espeak_Synth(text, len(text) + 1, 0, 0, 0, UTF8, None, None)
         self._library.espeak_Synchronize()
         write({"end": self._samples})
+
+    def _transcribe(self, text: bytes) -> None:
+        """Write the text in IPA: unlike the events of phones, it marks stress."""
+        left = ctypes.c_char_p(text)
+        while left.value:  # the library moves the pointer on by a clause
+            clause = self._transcribed(ctypes.byref(left), UTF8, IPA)
+            write({"ipa": (clause or b"").decode(errors="ignore") + " "})
 
     def _take(self, samples: Any, count: int, events: Any) -> int:
         number = 0

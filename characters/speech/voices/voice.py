@@ -6,6 +6,7 @@ The process reads one JSON object a line from its standard input and writes to i
     answered  {"rate": 22050}                                    first; the sample rate [Hz]
               {"word": 0, "length": 5, "at": 0}                  character offset, and the sample
               {"phone": "h", "at": 264}                          IPA; "" for a pause
+              {"ipa": "həlˈoʊ"}                                  if it marks stress; also in parts
               {"pcm": 2048}                                      so many bytes follow: 16 bits, mono
               {"end": 26081}                                     the number of samples
               {"error": "no voice speaks 'xx'"}                  instead of "end"
@@ -27,6 +28,7 @@ import numpy as np
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
+from cubeling.characters.speech.stress import with_stress
 
 TIMEOUT_S = 10.0
 """How long a voice may be silent before it counts as dead [s]."""
@@ -177,6 +179,7 @@ class _Answer:
     rate: int = 0
     words: list[tuple[int, int, int]] = field(default_factory=list)
     phones: list[tuple[str, int]] = field(default_factory=list)
+    transcription: str = ""
     pcm: bytearray = field(default_factory=bytearray)
     problem: str = ""
 
@@ -194,6 +197,8 @@ class _Answer:
                 self.words.append(word)
         elif "phone" in event:
             self.phones.append((str(event["phone"]), int(event["at"])))
+        elif "ipa" in event:
+            self.transcription += str(event["ipa"])[:MAX_TEXT]
         elif "rate" in event:
             self.rate = int(event["rate"])
         elif "error" in event:
@@ -207,7 +212,7 @@ class _Answer:
         whole = bytes(self.pcm[: len(self.pcm) // 2 * 2])
         samples = np.frombuffer(whole, "<i2").astype(np.float32) / np.float32(2**15)
         end = len(samples)
-        phones = _phones(self.phones, samples, self.rate)
+        phones = with_stress(_phones(self.phones, samples, self.rate), self.transcription)
         starts = [*(min(at, end) for _, _, at in self.words), end]
         words = tuple(
             Word(

@@ -27,11 +27,17 @@ Variant = Literal["mean", "total"]
 SPEED_CUTOFF_HZ = 6.0
 """Where the speed of a hand is low-passed to half of its power [Hz]."""
 
+APEX_CUTOFF_HZ = 10.0
+"""The same where stops are looked for: recoils are short [Hz]."""
+
 APEX_AFTER_S = 0.1
 """How long after the end of a stroke its apex may be [s]."""
 
-APEX_SHIFT_S = 0.05
-"""How much later the low-pass of the speed may show an apex [s]."""
+RECOILS = 0.4
+"""A hand that is slowest at less than this share of the greatest speed of its stroke recoils."""
+
+APEX_SPEED = 0.15
+"""A hand that has slowed down to this share of the greatest speed of its stroke stops."""
 
 BIMANUAL_APEX_S, BIMANUAL_GSI = 0.1, 1.0
 """A stroke of both hands is coordinated if its apices and strengths differ by no more."""
@@ -140,21 +146,25 @@ def hand_speed(path: Array, rate: float, cutoff_hz: float = SPEED_CUTOFF_HZ) -> 
 
 
 def find_apex(path: Array, rate: float, stroke: tuple[int, int]) -> int:
-    """Return the frame of the apex of a stroke.
+    """Return the frame of the apex of a stroke: where the hand stops.
 
-    Of the minima of the hand's speed between the start of the stroke and 0.1 s after its end, it is
-    the one farthest from where the stroke starts; of equals, the latest. As the low-pass moves
-    minima towards the slower side, it then is the farthest frame nearby.
+    That is looked for until 0.1 s after the end of the stroke; in a stroke without a stop it is the
+    slowest frame.
     """
     first, last = stroke
+    speed = hand_speed(path, rate, APEX_CUTOFF_HZ)
+    top = first + int(np.argmax(speed[first : last + 1]))
     last = min(last + round(APEX_AFTER_S * rate), len(path) - 1)
-    speed = hand_speed(path, rate)
-    speed = np.round(speed / max(float(speed.max()), 1e-9), 4)  # a hand that is held is as slow
-    inner = np.arange(max(first, 1), min(last, len(path) - 2) + 1)
-    lowest = inner[(speed[inner] < speed[inner - 1]) & (speed[inner] <= speed[inner + 1])]
-    away = np.linalg.norm(path - path[first], axis=1)
-    if not len(lowest):
-        return first + int(np.argmax(away[first : last + 1]))
-    found = int(lowest[len(lowest) - 1 - np.argmax(away[lowest][::-1])])
-    begin = max(found - round(APEX_SHIFT_S * rate), first)
-    return begin + int(np.argmax(away[begin : found + 1]))
+    return find_stop(speed, top, last)
+
+
+def find_stop(speed: Array, top: int, last: int) -> int:
+    """Return the first frame after a peak of a hand's speed, (frames,), in which the hand stops.
+
+    There it has slowed down to `APEX_SPEED` of that speed, or, if it recoils at once, to `RECOILS`.
+    """
+    part = speed[top : last + 1]
+    after = np.append(part[1:], np.inf)
+    turns = (part < after) & (part < RECOILS * part[0])
+    stopped = np.flatnonzero((part < APEX_SPEED * part[0]) | turns)
+    return top + int(stopped[0] if len(stopped) else np.argmin(part))

@@ -20,21 +20,22 @@ from cubeling.characters.synthesis.gestures.analysis import (
     masses,
 )
 from cubeling.characters.synthesis.gestures.library import (
+    Bounds,
     GestureLibrary,
     GesturePhrase,
     GestureRecording,
     Hand,
     gesture_joints,
 )
+from cubeling.characters.synthesis.gestures.marks import GestureMarks, marked_labels
 from cubeling.characters.synthesis.gestures.segmentation import (
     REST,
-    STROKE,
     Labels,
+    Segmentation,
     arm_length,
-    both_labels,
-    hand_labels,
     phrase_bounds,
     runs,
+    segment,
 )
 
 RATE_HZ = 60.0
@@ -44,36 +45,70 @@ MARGIN_S = 0.1
 """Rest that is kept before and after a unit of gestures [s]."""
 
 
+MINOR_STROKE = 0.4
+"""A hand whose peak speed is below this share of the other hand's makes no stroke (M4)."""
+
+
 @dataclass(frozen=True, eq=False)
 class AnalysedGestures:
     """The gestures of one clip."""
 
+    name: str
+    """Name of the clip."""
+
     poses: Pose
     """The clip at `RATE_HZ`, (frames, joints, …)."""
 
-    labels: dict[str, Labels]
-    """The label of each frame, by side and for "both"."""
+    labels: Labels
+    """The label of each frame, (frames,)."""
 
     phrases: tuple[GesturePhrase, ...]
     """Its phrases, as if the clip were recording 0."""
 
+    reason: str
+    """Why it has none; "" if it has some."""
 
-def analyse(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> AnalysedGestures:
-    """Find the gestures of a clip, their phases, apices and strengths."""
+    @property
+    def marks(self) -> list[GestureMarks]:
+        """The times of its gestures."""
+        return [GestureMarks.of(phrase, RATE_HZ) for phrase in self.phrases]
+
+
+def find_gestures(
+    clip: Clip, skeleton: Skeleton, anatomy: Anatomy, marks: Sequence[GestureMarks] = ()
+) -> AnalysedGestures:
+    """Find the gestures of a clip, their phases, apices and strengths.
+
+    With the marks of a person, their times are taken; hands and strengths are still found.
+    """
     poses = bake(clip, RATE_HZ, clip.duration, clip.name).poses
-    paths = hand_paths(poses, skeleton, anatomy)
-    lengths = {side: _arm_length(skeleton, anatomy, side) for side in paths}
-    labels = {side: hand_labels(path, RATE_HZ, lengths[side]) for side, path in paths.items()}
-    speeds = {side: hand_speed(path, RATE_HZ) for side, path in paths.items()}
-    merged = both_labels(labels, speeds)
-    phrases = [
-        _phrase(bounds, labels, paths, poses.rotations, anatomy) for bounds in phrase_bounds(merged)
-    ]
-    return AnalysedGestures(poses, labels | {"both": merged}, tuple(phrases))
+    paths = {
+        side: path / _arm_length(skeleton, anatomy, side)
+        for side, path in hand_paths(poses, skeleton, anatomy).items()
+    }
+    if marks:
+        frames = len(poses.rotations)
+        marked = [each.frames(RATE_HZ, frames) for each in marks]
+        found = Segmentation(marked_labels([bounds for bounds, _ in marked], frames), "")
+        phrases = [_phrase(*each, paths, poses.rotations, anatomy) for each in marked]
+    else:
+        found = segment(paths, RATE_HZ)
+        phrases = [
+            _phrase(bounds, None, paths, poses.rotations, anatomy)
+            for bounds in phrase_bounds(found.labels)
+        ]
+    return AnalysedGestures(clip.name, poses, found.labels, tuple(phrases), found.reason)
 
 
 def learn_gestures(clips: Sequence[Clip], skeleton: Skeleton, anatomy: Anatomy) -> GestureLibrary:
-    """Return the gestures of clips as a library.
+    """Return the gestures of clips as a library; errors as of `library_of`."""
+    return library_of([find_gestures(clip, skeleton, anatomy) for clip in clips], skeleton, anatomy)
+
+
+def library_of(
+    found: Sequence[AnalysedGestures], skeleton: Skeleton, anatomy: Anatomy
+) -> GestureLibrary:
+    """Return what was found in clips as a library.
 
     Raises
     ------
@@ -86,20 +121,18 @@ def learn_gestures(clips: Sequence[Clip], skeleton: Skeleton, anatomy: Anatomy) 
     recordings: list[GestureRecording] = []
     phrases: list[GesturePhrase] = []
     resting: list[Array] = []
-    for clip in clips:
-        found = analyse(clip, skeleton, anatomy)
-        turns = rotations.continuous(found.poses.rotations[:, joints])
-        resting.append(turns[found.labels["both"] == REST])
-        for first, last in _units(found.labels["both"]):
-            inside = [each for each in found.phrases if first <= each.bounds[0] < last]
+    for each in found:
+        turns = rotations.continuous(each.poses.rotations[:, joints])
+        # A clip that is cut tightly rests in its edges.
+        resting += [turns[each.labels == REST], turns[[0, -1]]]
+        for first, last in _units(each.labels):
+            inside = [phrase for phrase in each.phrases if first <= phrase.bounds[0] < last]
             if inside:
-                phrases += [_renumber(each, len(recordings), first) for each in inside]
-                recordings.append(GestureRecording(clip.name, turns[first : last + 1]))
+                phrases += [_renumber(phrase, len(recordings), first) for phrase in inside]
+                recordings.append(GestureRecording(each.name, turns[first : last + 1]))
     if not phrases:
-        names = ", ".join(clip.name for clip in clips)
-        raise CharacterError(
-            f"{names}: no gesture found; hands must rest, move away, and come back to rest"
-        )
+        reasons = "; ".join(f"{each.name}: {each.reason}" for each in found)
+        raise CharacterError(f"no gesture found in {reasons}")
     rest = _typical(np.concatenate(resting))
     return GestureLibrary(
         skeleton, anatomy, tuple(joints), RATE_HZ, rest, tuple(recordings), tuple(phrases)
@@ -119,25 +152,25 @@ def stroke_strength(
 
 
 def _phrase(
-    bounds: tuple[int, int, int, int, int, int],
-    labels: dict[str, Labels],
+    bounds: Bounds,
+    marked_apex: int | None,
     paths: dict[str, Array],
     turns: Array,
     anatomy: Anatomy,
 ) -> GesturePhrase:
-    stroke = bounds[2], bounds[3]
-    part = slice(stroke[0], stroke[1] + 1)
-    busy = [side for side, own in labels.items() if (own[part] == STROKE).any()]
+    begin, _, first, last, _, end = bounds
+    peaks = {
+        side: float(hand_speed(path, RATE_HZ)[begin : last + 1].max())
+        for side, path in paths.items()
+    }
+    busy = [side for side in peaks if peaks[side] >= MINOR_STROKE * max(peaks.values())]
     hand: Hand = "both" if len(busy) == 2 else "left" if busy == ["left"] else "right"
-    apices = {side: min(find_apex(paths[side], RATE_HZ, stroke), bounds[5]) for side in busy}
+    apices = {side: min(find_apex(paths[side], RATE_HZ, (first, last)), end) for side in busy}
     times = [apex / RATE_HZ for apex in apices.values()]
-    strength = stroke_strength(turns[part], hand, anatomy, (times[0], times[-1]))
-    longest = max(busy, key=lambda side: _reach(paths[side], stroke[0], apices[side]))
-    return GesturePhrase(0, hand, bounds, apices[longest], strength)
-
-
-def _reach(path: Array, first: int, last: int) -> float:
-    return float(np.linalg.norm(path[last] - path[first]))
+    stop = max(*apices.values(), first + 1)  # what settles is no part of the strength
+    strength = stroke_strength(turns[first : stop + 1], hand, anatomy, (times[0], times[-1]))
+    apex = apices[max(busy, key=peaks.__getitem__)] if marked_apex is None else marked_apex
+    return GesturePhrase(0, hand, bounds, apex, strength)
 
 
 def _arm_length(skeleton: Skeleton, anatomy: Anatomy, side: str) -> float:

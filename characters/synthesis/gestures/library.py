@@ -44,6 +44,9 @@ STEP_RAD = 1e-4
 Hand = Literal["left", "right", "both"]
 """Which hands make a stroke."""
 
+Bounds = tuple[int, int, int, int, int, int]
+"""Frames at which the five `PHASES` of a phrase begin, and the last frame of the last phase."""
+
 DATABASE_SHARE = 2 / 3
 """Share of the phrases, by strength, in the databases "aggressive" and "neutral"."""
 
@@ -61,7 +64,7 @@ class GesturePhrase:
     hand: Hand
     """Which hands make the stroke."""
 
-    bounds: tuple[int, int, int, int, int, int]
+    bounds: Bounds
     """Frames at which the five `PHASES` begin, and the last frame of the last phase."""
 
     apex: int

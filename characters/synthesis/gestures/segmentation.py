@@ -1,12 +1,15 @@
 """Finding the phases of gestures in a recording, without marks.
 
-Phases after Kendon and Kita as the thesis uses them (Fernández-Baena 2015, section 4.2, M4). Moves
-of a hand are what lies between minima of its speed; in a chain of moves without a hold, the last
-one is a stroke, and from there backward strokes and preparations take turns.
+Phases after Kendon and Kita as the thesis uses them (Fernández-Baena 2015, section 4.2, M4). Both
+hands are taken together, so that what they do at once is one gesture. A gesture unit is what hands
+do between two rests; the edges of a clip count as rests if it is cut tightly round a unit. Moves
+are what lies between minima of speed. The last pause from which the hands only go home ends the
+last stroke; in a chain of moves without a hold before it, the last one is a stroke, and from there
+backward strokes and preparations take turns.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -15,19 +18,26 @@ from numpy.typing import NDArray
 
 from cubeling.characters.motion.contacts import spans
 from cubeling.characters.skeleton.pose import Array
-from cubeling.characters.synthesis.gestures.analysis import hand_speed
+from cubeling.characters.synthesis.gestures.analysis import APEX_SPEED, find_stop, hand_speed
 
 REST, RETRACTION, HOLD, PREPARATION, STROKE = range(5)
-"""Labels of frames; of two hands the higher one counts (M4)."""
+"""Labels of frames."""
 
 Labels = NDArray[np.int8]
 """A label for each frame, (frames,)."""
 
-SLOW, MOVING = 0.25, 0.35
-"""Below the first speed a hand is held, above the second it moves [arm lengths/s]."""
+SLOW, MOST_SLOW = 0.15, 0.25
+"""A hand is held below this share of its greatest speed, and below so many arm lengths/s."""
 
-REST_RADIUS = 0.25
-"""How far from its place of rest a resting hand may be [arm lengths]."""
+MOVING = 1.4
+"""A hand moves at so many times the speed below which it is held."""
+
+MIN_PEAK = 0.2
+"""A unit in which no hand gets faster is none [arm lengths/s]."""
+
+NEAR, MOST_NEAR, LEAST_NEAR = 0.3, 0.25, 0.04
+"""A hand rests within this share of its farthest way from its place of rest, and its limits
+[arm lengths]."""
 
 OFTEN = 0.3
 """A hand rests where it is slow at least this share as often as where it is most often."""
@@ -51,79 +61,132 @@ RECOIL = 0.35
 """A move right after a longer one is its recoil, a part of the hold, if shorter than this share
 of it."""
 
-MINOR_STROKE = 0.4
-"""A stroke whose peak speed is below this share of the other hand's is not meant (M4)."""
+STILL = 0.35
+"""A pause is as long as the speed is below this share of the greatest of its unit."""
+
+AWAY = 0.3
+"""A retraction begins at least at this share of the farthest way of its unit."""
+
+HOMEWARD = 0.15
+"""A retraction may lead away again by this share of the farthest way of its unit."""
+
+LAST_PAUSE = 0.5
+"""The last pause before a retraction is this share as long as the longest one, or longer."""
+
+ONSET = 0.9
+"""A way out of rest in one go becomes the stroke where, past its peak, its speed falls to this
+share."""
+
+SETTLE_S = 0.16
+"""A hand settles so long after its stroke; the stroke lasts until then [s]."""
 
 
 @dataclass(frozen=True)
-class HandMove:
-    """A hand goes from one place to another."""
+class Segmentation:
+    """The phases of the gestures in a clip."""
+
+    labels: Labels
+    """The label of each frame, (frames,)."""
+
+    reason: str
+    """Why there is no gesture; "" if there are some."""
+
+
+@dataclass(frozen=True)
+class _Move:
+    """The hands go from one place to another."""
 
     first: int
-    """Frame at which it begins."""
-
     last: int
-    """Frame at which it ends."""
-
     length: float
     """Distance between both places [arm lengths]."""
 
 
-def rest_place(path: Array, slow: NDArray[np.bool_], radius: float) -> Array | None:
-    """Return where a hand rests, (3,), or None if it is never slow.
+def segment(paths: Mapping[str, Array], rate: float) -> Segmentation:
+    """Find the phases of gestures from the way of each hand, (frames, 3) [arm lengths], by side."""
+    frames = len(next(iter(paths.values())))
+    away = np.zeros(frames, np.bool_)
+    squares, distance = np.zeros(frames), np.zeros(frames)
+    reasons: list[str] = []
+    for path in paths.values():
+        found = _Excursions.of(path, rate)
+        reasons.append(found.reason)
+        for first, last in found.spans:
+            part = slice(first, last + 1)
+            away[part] = True
+            squares[part] += hand_speed(path, rate, CUTOFF_HZ)[part] ** 2
+            far = np.linalg.norm(path[part] - found.place, axis=1)
+            distance[part] = np.maximum(distance[part], far)
+    labels = np.full(frames, REST, np.int8)
+    speed = np.sqrt(squares)
+    places = np.concatenate([*paths.values()], axis=1)
+    for first, last in runs(away):
+        if speed[first : last + 1].max() >= MIN_PEAK:
+            _label_unit(labels, _Unit(places, speed, distance, first, last, rate))
+        else:
+            reasons.append(f"no hand moves at {MIN_PEAK} arm lengths a second")
+    if (labels == STROKE).any():
+        return Segmentation(labels, "")
+    why = next(filter(None, reversed(reasons)), "hands leave their place of rest in one move only")
+    return Segmentation(labels, why)
 
-    It is the lowest of the places where it is slow often: hands are held up in gestures, too.
+
+@dataclass(frozen=True)
+class _Excursions:
+    """Where a hand is away from its place of rest."""
+
+    place: Array
+    """Where it rests, (3,) [arm lengths]."""
+
+    spans: Sequence[tuple[int, int]]
+    """First and last frame of each time that it is away."""
+
+    reason: str
+    """Why there are none."""
+
+    @classmethod
+    def of(cls, path: Array, rate: float) -> "_Excursions":
+        """Find where a hand rests, and when it does not; `path` in arm lengths."""
+        pad = round(MIN_REST_S * rate)
+        # A clip that is cut tightly holds no rest: what is beyond its edges stands for one.
+        longer = np.concatenate([path[[0] * pad], path, path[[-1] * pad]])
+        speed = hand_speed(longer, rate, CUTOFF_HZ)
+        slow = speed < min(SLOW * float(speed.max()), MOST_SLOW)
+        place = rest_place(longer, slow, MOST_NEAR)
+        far = np.linalg.norm(longer - place, axis=1)
+        near = far < min(max(NEAR * float(far.max()), LEAST_NEAR), MOST_NEAR)
+        if far.max() < MIN_MOVE:
+            return cls(place, [], "no hand leaves its place of rest")
+        rests = runs(slow & near, pad)
+        if len(rests) < 2:
+            return cls(place, [], "no hand comes back to where it rested")
+        found = []
+        for (_, begin), (end, _) in pairwise(rests):
+            tight = begin < 2 * pad or end > len(longer) - 2 * pad
+            if tight and len(runs(near[begin : end + 1])) > 2:
+                continue
+            if far[begin : end + 1].max() >= MIN_MOVE:
+                found.append((max(begin - pad, 0), min(end - pad, len(path) - 1)))
+        reason = "" if found else "hands pass their place of rest without resting there"
+        return cls(place, found, reason)
+
+
+def rest_place(path: Array, slow: NDArray[np.bool_], radius: float) -> Array:
+    """Return where a hand rests, (3,).
+
+    That is where the clip begins and ends, if that is one place: it is cut so. Else it is the
+    lowest of the places where the hand is slow often: hands are held up in gestures, too.
     """
+    if np.linalg.norm(path[-1] - path[0]) < radius:
+        ends: Array = (path[0] + path[-1]) / 2
+        return ends
     places = path[slow]
-    if not len(places):
-        return None
     sample = places[:: max(len(places) // 400, 1)]
     near = np.linalg.norm(sample[:, None] - sample[None], axis=-1) < radius
     counts = near.sum(1)
     often = np.flatnonzero(counts >= OFTEN * counts.max())
     mean: Array = sample[near[often[sample[often, 1].argmin()]]].mean(0)
     return mean
-
-
-def hand_labels(path: Array, rate: float, arm_length: float) -> Labels:
-    """Return the label of each frame of a hand, from its path (frames, 3) [m].
-
-    All are `REST` if it never rests: then nothing tells a gesture from what else it does.
-    """
-    labels = np.full(len(path), REST, np.int8)
-    scaled = path / arm_length
-    speed = hand_speed(scaled, rate, CUTOFF_HZ)
-    place = rest_place(scaled, speed < SLOW, REST_RADIUS)
-    if place is None:
-        return labels
-    near = np.linalg.norm(scaled - place, axis=1) < REST_RADIUS
-    rests = runs((speed < SLOW) & near, round(MIN_REST_S * rate))
-    for (_, begin), (end, _) in pairwise(rests):
-        moves = _moves(scaled, speed, begin, end)
-        if moves:
-            _label_unit(labels, moves, rate)
-    return labels
-
-
-def both_labels(labels: dict[str, Labels], speeds: dict[str, Array]) -> Labels:
-    """Return the labels of both hands together: stroke before preparation before hold.
-
-    A minor stroke while the other hand makes a significant one counts as a hold. Strokes that
-    overlap become one.
-    """
-    merged = {side: each.copy() for side, each in labels.items()}
-    for side, own in labels.items():
-        for first, last in runs(own == STROKE):
-            part = slice(first, last + 1)
-            others = [
-                float(speeds[other][part].max())
-                for other, theirs in labels.items()
-                if other != side and (theirs[part] == STROKE).any()
-            ]
-            if others and float(speeds[side][part].max()) < MINOR_STROKE * max(others):
-                merged[side][part] = HOLD
-    together: Labels = np.max([*merged.values()], axis=0)
-    return together
 
 
 def phrase_bounds(labels: Labels) -> list[tuple[int, int, int, int, int, int]]:
@@ -158,53 +221,122 @@ def _until(labels: Labels, frame: int, limit: int, wanted: tuple[int, ...]) -> i
     return min(frame, limit)
 
 
-def _moves(path: Array, speed: Array, begin: int, end: int) -> list[HandMove]:
-    """Return the moves between two rests."""
-    inner = np.arange(begin + 1, end)
-    lowest = inner[(speed[inner] <= speed[inner - 1]) & (speed[inner] < speed[inner + 1])]
-    cuts = [begin, *lowest.tolist(), end]
-    parts: list[tuple[int, int]] = []
-    for first, last in pairwise(cuts):
-        peak = float(speed[first : last + 1].max())
-        if peak < MOVING:
-            continue
-        if parts and parts[-1][1] == first:
-            before = float(speed[parts[-1][0] : first + 1].max())
-            if speed[first] > SPLIT * min(peak, before):
-                parts[-1] = (parts[-1][0], last)
+@dataclass(frozen=True)
+class _Unit:
+    """What hands do between two rests."""
+
+    places: Array
+    """Where both hands are, (frames, 3 a hand) [arm lengths]."""
+
+    speed: Array
+    """Speed of both hands together, (frames,) [arm lengths/s]."""
+
+    distance: Array
+    """How far the farther hand is from its place of rest, (frames,) [arm lengths]."""
+
+    begin: int
+    end: int
+    rate: float
+
+    @property
+    def slow(self) -> float:
+        """Speed below which hands are held."""
+        peak = float(self.speed[self.begin : self.end + 1].max())
+        return min(SLOW * peak, MOST_SLOW)
+
+    def moves(self) -> list[_Move]:
+        """Return the moves, in order."""
+        speed = self.speed
+        inner = np.arange(self.begin + 1, self.end)
+        lowest = inner[(speed[inner] <= speed[inner - 1]) & (speed[inner] < speed[inner + 1])]
+        parts: list[tuple[int, int]] = []
+        for first, last in pairwise([self.begin, *lowest.tolist(), self.end]):
+            peak = float(speed[first : last + 1].max())
+            if peak < MOVING * self.slow:
                 continue
-        parts.append((first, last))
-    moves = [_trim(path, speed, *part) for part in parts]
-    return [move for move in moves if move.length >= MIN_MOVE]
+            if parts and parts[-1][1] == first:
+                before = float(speed[parts[-1][0] : first + 1].max())
+                if speed[first] > SPLIT * min(peak, before):
+                    parts[-1] = (parts[-1][0], last)
+                    continue
+            parts.append((first, last))
+        moves = [self._trim(*part) for part in parts]
+        return [move for move in moves if move.length >= MIN_MOVE]
+
+    def retraction(self, moves: Sequence[_Move]) -> int:
+        """Return the number of the first move of the retraction: after a pause, only homeward."""
+        if len(moves) < 2:
+            return len(moves)
+        farthest = float(self.distance[self.begin : self.end + 1].max())
+        pauses: dict[int, float] = {}
+        for number, (before, after) in enumerate(pairwise(moves), 1):
+            start = float(self.distance[after.first])
+            most = float(self.distance[after.first : self.end + 1].max())
+            if start >= AWAY * farthest and most <= start + HOMEWARD * farthest:
+                pauses[number] = self._stillness(before, after)
+        longest = max(pauses.values(), default=0.0)
+        long = (n for n, pause in pauses.items() if pause >= LAST_PAUSE * longest)
+        return max(long, default=len(moves) - 1)
+
+    def split(self, move: _Move) -> int:
+        """Return where a way out of rest in one go becomes the stroke."""
+        part = self.speed[move.first : move.last + 1]
+        inner = np.arange(1, len(part) - 1)
+        top = int(part.argmax())
+        dips = inner[(part[inner] <= part[inner - 1]) & (part[inner] < part[inner + 1])]
+        if len(dips):
+            return move.first + int(dips[-1])
+        late = np.flatnonzero(part[top:] < ONSET * part[top])
+        return move.first + top + (int(late[0]) if len(late) else 0)
+
+    def _stillness(self, before: _Move, after: _Move) -> float:
+        """Return how long and how deep the pause between two moves is [s]."""
+        ways = [self.speed[m.first : m.last + 1] for m in (before, after)]
+        first, last = before.first + int(ways[0].argmax()), after.first + int(ways[1].argmax())
+        level = STILL * float(self.speed[self.begin : self.end + 1].max())
+        depth = np.maximum(1.0 - self.speed[first : last + 1] / level, 0.0)
+        return float(depth.sum()) / self.rate
+
+    def _trim(self, first: int, last: int) -> _Move:
+        """Return a move without the slow frames at its ends."""
+        part = self.speed[first : last + 1]
+        fast = np.flatnonzero(part > min(self.slow, APEX_SPEED * float(part.max())))
+        begin, end = first + max(int(fast[0]) - 1, 0), min(first + int(fast[-1]) + 1, last)
+        way = (self.places[end] - self.places[begin]).reshape(-1, 3)
+        return _Move(begin, end, float(np.linalg.norm(way, axis=1).max()))
 
 
-def _trim(path: Array, speed: Array, first: int, last: int) -> HandMove:
-    """Return a move without the slow frames at its ends."""
-    fast = np.flatnonzero(speed[first : last + 1] > SLOW)
-    begin, end = first + max(int(fast[0]) - 1, 0), min(first + int(fast[-1]) + 1, last)
-    return HandMove(begin, end, float(np.linalg.norm(path[end] - path[begin])))
-
-
-def _label_unit(labels: Labels, moves: Sequence[HandMove], rate: float) -> None:
-    """Label the frames of a unit from its moves: the last one leads back to rest."""
-    labels[moves[0].first : moves[-1].last + 1] = HOLD
-    *others, back = moves
-    if not others:
+def _label_unit(labels: Labels, unit: _Unit) -> None:
+    """Label the frames of a unit from its moves."""
+    moves = unit.moves()
+    if len(moves) < 2:
         return
-    labels[back.first : back.last + 1] = RETRACTION
-    chains: list[list[HandMove]] = [[]]
-    for move in others:
+    back = unit.retraction(moves)
+    labels[moves[0].first : moves[-1].last + 1] = HOLD
+    labels[moves[back].first : moves[-1].last + 1] = RETRACTION
+    chains: list[list[_Move]] = [[]]
+    for move in moves[:back]:
         chain = chains[-1]
-        right_after = chain and (move.first - chain[-1].last) / rate < MIN_HOLD_S
+        right_after = chain and (move.first - chain[-1].last) / unit.rate < MIN_HOLD_S
         recoils = right_after and move.length < RECOIL * chain[-1].length
         if recoils and chain[-1] is not moves[0]:  # hands come from rest by a long way
             continue
         if chain and not right_after:
             chains.append([])
         chains[-1].append(move)
+    settle = round(SETTLE_S * unit.rate)
     for chain in chains:
         for back_number, move in enumerate(reversed(chain)):
-            labels[move.first : move.last + 1] = STROKE if back_number % 2 == 0 else PREPARATION
+            is_stroke = back_number % 2 == 0
+            first = unit.split(move) if is_stroke and move is moves[0] else move.first
+            labels[move.first : move.last + 1] = PREPARATION
+            if is_stroke:
+                top = move.first + int(np.argmax(unit.speed[move.first : move.last + 1]))
+                stop = find_stop(unit.speed, max(top, first), move.last)
+                labels[stop : move.last + 1] = HOLD
+                after = slice(stop, stop + settle + 1)
+                labels[first:stop] = STROKE
+                labels[after][labels[after] == HOLD] = STROKE
 
 
 def runs(mask: NDArray[np.bool_], shortest: int = 1) -> list[tuple[int, int]]:

@@ -37,6 +37,10 @@ class BalanceShift:
     feeling: Region | None = None
     """The emotions that it leads to; None if it suits any."""
 
+    leaves: int = -1
+    """Number of the resting posture that it left in the recording, for that with the next number;
+    −1 if it was not recorded between two rests."""
+
 
 @dataclass(frozen=True, eq=False)
 class RestingPosture:
@@ -56,6 +60,9 @@ class RestingPosture:
 
     feeling: Region | None = None
     """The emotions that it shows; None if it suits any."""
+
+    number: int = -1
+    """Its number among the rests of the recordings; −1 if it was not recorded."""
 
     frames: Array | None = None
     """How she moved while she rested, posture vectors (frames, size); None if not recorded."""
@@ -98,25 +105,20 @@ class IdleDatabase:
         if any(abs(each.rate - rate) > 1e-6 for each in recordings):
             raise CharacterError("recordings of one person need the same frame rate")
         space = PostureSpace.of(np.concatenate([each.vectors for each in recordings]))
-        postures = tuple(
-            RestingPosture(
-                frames.mean(0),
-                rest.balance,
-                (rest.end - rest.first) / rate,
-                rest in (each.rests[0], each.rests[-1]),
-                each.feeling,
-                frames,
-            )
-            for each in recordings
-            for rest in each.rests
-            for frames in [each.vectors[rest.first : rest.end]]
-        )
-        shifts = tuple(
-            BalanceShift(each.vectors[a.end - 1 : b.first + 1], a.balance, b.balance, each.feeling)
-            for each in recordings
-            for a, b in each.shifts
-        )
-        return IdleDatabase(kind, rate, space, postures, shifts)
+        postures: list[RestingPosture] = []
+        shifts: list[BalanceShift] = []
+        for each in recordings:
+            for a, b in each.shifts:
+                way = each.vectors[a.end - 1 : b.first + 1]
+                leaves = len(postures) + each.rests.index(a)
+                shifts.append(BalanceShift(way, a.balance, b.balance, each.feeling, leaves))
+            for rest in each.rests:
+                frames = each.vectors[rest.first : rest.end]
+                lasted = (rest.end - rest.first) / rate
+                cut = rest in (each.rests[0], each.rests[-1])
+                own = rest.balance, lasted, cut, each.feeling, len(postures)
+                postures.append(RestingPosture(frames.mean(0), *own, frames))
+        return IdleDatabase(kind, rate, space, tuple(postures), tuple(shifts))
 
     @property
     def rests(self) -> list[Array]:
@@ -177,6 +179,13 @@ class IdleDatabase:
         whole = [each.duration for each in own if not each.cut]
         longest = max(each.duration for each in own)
         return min(whole, default=longest), longest
+
+    @cached_property
+    def dwells(self) -> dict[str, Array]:
+        """How long she rested on each balance that there is, from short to long [s]."""
+        return {
+            name: np.sort([each.duration for each in own]) for name, own in self.by_balance.items()
+        }
 
     def with_shift(self, shift: BalanceShift) -> "IdleDatabase":
         """Return it with one more shift."""

@@ -32,6 +32,9 @@ REACTION_S = 0.7
 MARGIN = 0.1
 """How far an emotion may leave the region of a posture before that does not suit it."""
 
+FOLLOWED = 0.8
+"""How often it goes on from a rest as she did: people shift in bursts, with long rests between."""
+
 RAMP_S = 0.4
 """How long small variations take to come and go [s]."""
 
@@ -59,7 +62,7 @@ class IdleMotion:
             variations = self._suiting.variations
             self._variations = VariationStream(variations, database.space, self._rng)
         self._posture = self._draw(self._suiting.postures)
-        self._rested, self._chance = 0.0, self._rng.uniform()
+        self._rested, self._chance = 0.0, self._share(self._posture)
         self._here = self._posture.vector  # the posture of the latest frame
         self._shift: deque[Array] = deque()  # postures on the way to the next rest
         self._kept: deque[Array] = deque(maxlen=max(int(_KEPT_S * database.rate), 4))
@@ -188,7 +191,7 @@ class IdleMotion:
         if following is not None:
             self._posture, shift = following
             self._shift.extend(shift[1:])
-        self._rested, self._chance = 0.0, self._rng.uniform()
+        self._rested, self._chance = 0.0, self._share(self._posture)
         return self._shift.popleft() if self._shift else self._posture.vector
 
     def _liveliness(self) -> float:
@@ -200,16 +203,36 @@ class IdleMotion:
         return self._lively
 
     def pause(self, posture: RestingPosture, chance: float) -> float:
-        """Return how long to rest [s]: p_m + chance · (1 − activation) · p_o (eq. 4.2)."""
-        known = posture.balance in self._suiting.by_balance
-        shortest, longest = (self._suiting if known else self._database).pause_limits(
-            posture.balance
-        )
-        return shortest + chance * (1.0 - self._emotion.arousal) * (longest - shortest)
+        """Return how long to rest [s]: p_m + (1 − activation) · (d − p_m), d of her own rests.
+
+        Equation 4.2 has chance · p_o for d − p_m; but people rest long or shortly, and seldom in
+        between. A chance, 0…1, is the share of her rests on this balance that are shorter.
+        """
+        database = self._knowing(posture.balance)
+        dwells = database.dwells[posture.balance]
+        dwell = float(dwells[min(int(chance * len(dwells)), len(dwells) - 1)])
+        # Nobody is active for less time than her rests that were not cut.
+        shortest = min(database.pause_limits(posture.balance)[0], dwell)
+        return shortest + (1.0 - self._emotion.arousal) * (dwell - shortest)
+
+    def _share(self, posture: RestingPosture) -> float:
+        """Return the chance of the pause that was recorded in a posture; any, if none was."""
+        if posture.number < 0:
+            return float(self._rng.uniform())
+        dwells = self._knowing(posture.balance).dwells[posture.balance]
+        return float((np.searchsorted(dwells, posture.duration) + 0.5) / len(dwells))
+
+    def _knowing(self, balance: str) -> IdleDatabase:
+        """Return what suits the emotion if it has rests on a balance, else all of the database."""
+        return self._suiting if balance in self._suiting.by_balance else self._database
 
     def _following(self, posture: RestingPosture) -> tuple[RestingPosture, Array] | None:
         """Return where to rest next and the shift to there, or None if no shift leads on."""
         database = self._suiting
+        recorded = [each for each in database.shifts if each.leaves == posture.number >= 0]
+        after = [each for each in database.postures if each.number == posture.number + 1]
+        if recorded and after and self._rng.uniform() < FOLLOWED:
+            return after[0], fitted_shift(database, recorded, posture.vector, after[0].vector)
         chances = database.probabilities(posture.balance)
         shifts = [each for each in database.shifts if each.start == posture.balance]
         if not chances:

@@ -3,7 +3,8 @@
 Source: Egges 2006, section 3.3.2 (S2, S6).
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -34,6 +35,11 @@ _SHIFTING_SPEED = 0.06  # [stances/s] to the side; slower hips rest
 _SMOOTHING_S = 0.2
 _MIN_EDGE_S = 0.2  # with a shorter rest at an end, the recording begins or ends within a shift
 _MIN_STANCE = 0.05  # [body heights]: of feet closer than this, nobody can say which one stands
+MIN_PART_S = 5.0
+"""Shortest part of a recording between two steps that is used [s]."""
+
+_STEPPING_SPEED = 0.25  # [body heights/s]: a foot that is faster over the ground steps
+_FAR_LEAN = 0.5  # [trunks]: as far to the side as one foot is from the other
 _MIN_STANDING_SHARE = 0.8  # of the frames with both feet on the ground
 _MIN_HIPS_HEIGHT = 0.75  # of those at rest: lower hips belong to somebody who sits
 _MAX_SPEED = 5.0  # [body heights/s]: a joint that is faster has jumped
@@ -82,6 +88,41 @@ class StandingRecording:
         return tuple(pairwise(self.rests))
 
 
+def read_parts(
+    clip: Clip,
+    skeleton: Skeleton,
+    anatomy: Anatomy,
+    feeling: Region | None = None,
+    alignment: Alignment = "feet",
+) -> tuple[StandingRecording, ...]:
+    """Return the parts of a clip in which a person stays where she is; see `read_standing`.
+
+    A clip without steps is one part. Parts of less than `MIN_PART_S` are left out.
+    """
+    feet = find_feet(skeleton)
+    placed = clip.poses.globals(skeleton)[..., :3, 3]
+    size = float(np.ptp(skeleton.rest.globals(skeleton)[:, 1, 3]))
+    stays = np.ones(len(clip), np.bool_)
+    if len(feet) >= 2 and len(clip) > 1:
+        places = np.stack([placed[:, [*foot]].mean(1) for foot in feet], axis=1)[..., [0, 2]]
+        smooth = gaussian_smooth(places.reshape(len(clip), -1), _SMOOTHING_S * clip.rate)
+        speeds = np.gradient(smooth, axis=0).reshape(places.shape) * clip.rate
+        stays = np.linalg.norm(speeds, axis=2).max(1) < _STEPPING_SPEED * size
+        jumps = np.linalg.norm(np.diff(placed, axis=0), axis=-1).max(1) * clip.rate
+        stays[1:] &= jumps <= _MAX_SPEED * size
+    parts = [
+        slice(first, first + count)
+        for first, count in spans(stays, loop=False)
+        if count >= MIN_PART_S * clip.rate
+    ]
+    if stays.all() or not parts:  # what is wrong with the whole clip is said of it
+        return (read_standing(clip, skeleton, anatomy, feeling, alignment),)
+    return tuple(
+        read_standing(replace(clip, poses=clip.poses[part]), skeleton, anatomy, feeling, alignment)
+        for part in parts
+    )
+
+
 def read_standing(
     clip: Clip,
     skeleton: Skeleton,
@@ -91,10 +132,12 @@ def read_standing(
 ) -> StandingRecording:
     """Return a clip of a standing person with its rests; `feeling` is what she shows.
 
+    Of somebody who sits, the balance is that of the trunk: how far it leans to a side.
+
     Raises
     ------
     CharacterError
-        If she does not stand, sits, or a joint jumps.
+        If she neither stands nor sits, or a joint jumps.
     """
     hips, feet = anatomy.joint("hips"), find_feet(skeleton)
     if hips is None or len(feet) < 2:
@@ -102,6 +145,8 @@ def read_standing(
     placed = clip.poses.globals(skeleton)
     _refuse_unrest(clip, skeleton, placed, hips)
     balance, middle, heading = _balance(clip, skeleton, anatomy, placed)
+    if _sits(skeleton, placed, hips):
+        balance = _leaning(anatomy, placed, heading)
     places, turns = placed[:, hips, :3, 3], rotations.from_matrix(placed[:, hips, :3, :3])
     if alignment == "feet":
         back = rotations.about("y", -heading)
@@ -115,6 +160,32 @@ def read_standing(
     return StandingRecording(clip.name, clip.rate, vectors, balance, rests, feeling)
 
 
+def borrow_shifts(
+    own: Sequence[StandingRecording], lent: Sequence[StandingRecording]
+) -> tuple[StandingRecording, ...]:
+    """Return recordings of somebody who never shifts, and those of a lender in her mean posture.
+
+    Both are on one skeleton. A lender plays at the rate of the first own recording.
+    """
+    middle = np.concatenate([each.vectors for each in own]).mean(0)
+    theirs = np.concatenate([each.vectors for each in lent]).mean(0)
+    return (*own, *(_moved(each, middle - theirs, own[0].rate) for each in lent))
+
+
+def _moved(recording: StandingRecording, offset: Array, rate: float) -> StandingRecording:
+    """Return a recording whose postures are moved by an offset, at another rate [Hz]."""
+    count = round(len(recording.vectors) * rate / recording.rate)
+    at = np.minimum(np.arange(count) * recording.rate / rate, len(recording.vectors) - 1)
+    low = at.astype(int)
+    high, part = np.minimum(low + 1, len(recording.vectors) - 1), at - low
+    vectors = recording.vectors[low] + part[:, None] * (
+        recording.vectors[high] - recording.vectors[low]
+    )
+    balance = recording.balance[low]
+    rests = find_rests(balance, rate)
+    return StandingRecording(recording.name, rate, vectors + offset, balance, rests)
+
+
 def _refuse_unrest(clip: Clip, skeleton: Skeleton, placed: Array, hips: int) -> None:
     """Refuse a clip in which nobody stands, or that jumps."""
     rest = skeleton.rest.globals(skeleton)[:, :3, 3]
@@ -124,18 +195,35 @@ def _refuse_unrest(clip: Clip, skeleton: Skeleton, placed: Array, hips: int) -> 
     if len(steps) and steps.max() * clip.rate > _MAX_SPEED * size:
         at = int(steps.argmax()) / clip.rate
         raise CharacterError(f"{where}: a joint jumps at {at:.1f} s; cut the recording there")
-    height = float(np.median(placed[:, hips, 1, 3])) / rest[hips, 1]
-    if height < _MIN_HIPS_HEIGHT:
-        raise CharacterError(
-            f"{where}: the hips are at {height:.0%} of their standing height; idle motion is "
-            "learned from people who stand"
-        )
+    if _sits(skeleton, placed, hips):
+        return
     standing = float(find_contacts(clip, skeleton, find_feet(skeleton)).all(1).mean())
     if standing < _MIN_STANDING_SHARE:
         raise CharacterError(
             f"{where}: both feet stand in only {standing:.0%} of it; idle motion is learned from "
             "people who stand still"
         )
+
+
+def _sits(skeleton: Skeleton, placed: Array, hips: int) -> bool:
+    """Return whether the hips are too low for somebody who stands."""
+    standing = float(skeleton.rest.globals(skeleton)[hips, 1, 3])
+    return float(np.median(placed[:, hips, 1, 3])) < _MIN_HIPS_HEIGHT * standing
+
+
+def _leaning(anatomy: Anatomy, placed: Array, heading: float) -> Array:
+    """Return how far a trunk leans to the left, (frames,), as a share of its height ÷ `_FAR_LEAN`.
+
+    So somebody who sits shifts if she leans by about as much as she may while standing.
+    """
+    top = next((anatomy.joint(part) for part in ("neck", "head", "chest")), None)
+    hips = anatomy.joints["hips"]
+    if top is None:
+        return np.zeros(len(placed))
+    trunk = placed[:, top, :3, 3] - placed[:, hips, :3, 3]
+    side = rotations.rotate(rotations.about("y", -heading), trunk)[:, 0]
+    leaning: Array = side / (_FAR_LEAN * float(np.median(np.linalg.norm(trunk, axis=1))))
+    return leaning
 
 
 def _balance(

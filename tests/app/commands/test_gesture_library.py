@@ -45,6 +45,20 @@ def test_learns_the_gestures_of_recordings(cubeling, talking, tmp_path):
     assert library.skeleton_identity == GestureLibrary.load(bundled()).skeleton_identity
 
 
+def test_marks_are_written_compared_and_learned_from(cubeling, talking, tmp_path):
+    both = f"{talking}#one", f"{talking}#still"
+    code, out, _ = cubeling("gesture", "marks", *both, "-o", "m.csv")
+    assert code == 0
+    assert "no gesture; no hand leaves its place of rest" in " ".join(out.split())
+    code, out, _ = cubeling("gesture", "marks", both[0], "--against", "m.csv")
+    assert code == 0
+    assert "missed: 0.0%" in out
+    assert "apex within 0.1 s: 100.0%" in out
+    code, _, _ = cubeling("gesture", "learn", both[0], "--marks", "m.csv", "-o", "m.gestures")
+    assert code == 0
+    assert len(GestureLibrary.load(tmp_path / "m.gestures").phrases) == 3
+
+
 def test_recordings_without_gestures_are_refused_in_one_line(cubeling, talking, tmp_path):
     code, _, err = cubeling("gesture", "learn", f"{talking}#still", "-o", "b.gestures")
     assert code == 2

@@ -50,6 +50,16 @@ def run(*arguments):
     return result.output
 
 
+def test_accents_are_compared_with_those_of_people(recording, tmp_path):
+    labels = tmp_path / "times.csv"
+    labels.write_text("time\n1.3\n")
+    grid = recording.with_suffix(".TextGrid")
+    output = run("show", recording, "--textgrid", grid, "--labels", labels)
+    assert "beside 1 label of people" in output
+    (row,) = [line.split() for line in output.splitlines() if line.strip().startswith("0.6 ")]
+    assert row == ["0.6", "1", "1.00", "1.00", "1.00", "1.00"]
+
+
 def test_the_table_names_the_word_of_an_accent(recording):
     output = run("show", recording, "--textgrid", recording.with_suffix(".TextGrid"))
     assert "2.00 s, 16000 Hz" in output

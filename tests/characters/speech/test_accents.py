@@ -1,5 +1,7 @@
 """Pitch accents that are known by construction, and how strong they are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
@@ -58,6 +60,15 @@ def random_prosody(seed: int) -> Prosody:
     changes = np.flatnonzero(np.diff(np.concatenate([[False], f0 > 0, [False]]).astype(int)))
     voiced = np.asarray(0.01 * changes.reshape(-1, 2), float)
     return Prosody(times, f0, 4 * smooth - 20, voiced, np.zeros((0, 2)), 6.0)
+
+
+def test_a_voice_that_goes_away_from_the_microphone_keeps_its_accents():
+    prosody = random_prosody(7)
+    near = accents_of(prosody)
+    away = replace(prosody, intensity=prosody.intensity - 4.0 * prosody.times)  # 24 dB in all
+    far = accents_of(away)
+    same = {round(a.time, 1) for a in near} & {round(a.time, 1) for a in far}
+    assert len(same) >= 0.8 * max(len(near), len(far))
 
 
 @settings(max_examples=examples(60))

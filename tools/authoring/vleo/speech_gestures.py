@@ -7,7 +7,7 @@ import numpy as np
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Pose
-from cubeling.characters.synthesis.gestures.analysis import find_apex, hand_paths
+from cubeling.characters.synthesis.gestures.analysis import APEX_AFTER_S, hand_paths
 from cubeling.characters.synthesis.gestures.learning import stroke_strength
 from cubeling.characters.synthesis.gestures.library import (
     GestureLibrary,
@@ -95,7 +95,8 @@ def vleo_gestures(character: Character) -> GestureLibrary:
             moved = np.repeat(skeleton.rest.translations[None], len(turns), axis=0)
             path = hand_paths(Pose(moved, turns), skeleton, anatomy)["left"]
             for start, prepared, begin, reached, end, last in bounds:
-                apex = find_apex(path, RATE_HZ, (begin, reached))  # the head comes late
+                late = path[begin : reached + round(APEX_AFTER_S * RATE_HZ) + 1]  # the head is
+                apex = begin + int(np.linalg.norm(late - late[0], axis=1).argmax())
                 done = max(reached, apex)
                 gsi = stroke_strength(turns[begin : done + 1], "both", anatomy)
                 phases = start, prepared, begin, done, max(end, done), last

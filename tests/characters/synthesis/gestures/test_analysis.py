@@ -16,7 +16,7 @@ from cubeling.characters.synthesis.gestures.analysis import (
     kinetic_energies,
     masses,
 )
-from cubeling.characters.synthesis.gestures.learning import analyse
+from cubeling.characters.synthesis.gestures.learning import find_gestures
 from tests.examples import examples
 
 RATE = 120.0
@@ -95,7 +95,7 @@ def test_legs_and_the_way_that_somebody_faces_do_not_count(human, beating):
         turns[:, 0] = rotations.about("y", 2.0 * now)
 
     plain, busy = (
-        analyse(beating(BEAT, others=each), human.skeleton, human.anatomy)
+        find_gestures(beating(BEAT, others=each), human.skeleton, human.anatomy)
         for each in (None, others)
     )
     assert [p.bounds for p in plain.phrases] == [p.bounds for p in busy.phrases]
