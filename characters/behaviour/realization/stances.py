@@ -4,6 +4,7 @@ Trunk, neck and head turn, the pelvis comes down, and hips and knees bend so tha
 its place. The angles are ours.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,8 +12,8 @@ import numpy as np
 
 from cubeling.characters.behaviour.intents import PostureIntent
 from cubeling.characters.behaviour.realization.planned_values import presence
-from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
-from cubeling.characters.ik.legs import LegIK, find_legs, find_paws
+from cubeling.characters.body.axes import Degrees, body_axes
+from cubeling.characters.ik.legs import LegFrames, LegIK, find_legs, find_paws
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
@@ -95,6 +96,9 @@ STANCES = {
 }
 """The stances by name; any other name, as STANDING, is how the body stands by itself."""
 
+MAX_EXTENSION = 0.985
+"""A leg is stretched up to this share of its length to reach its foot; else the pelvis comes down."""
+
 _QUADRUPED = {
     "SITTING": Stance(0.52, -0.12, hips=(-24.0, 0.0, 0.0), head=(14.0, 0.0, 0.0)),
     "CROUCHING": Stance(0.34, head=(-8.0, 0.0, 0.0)),
@@ -159,6 +163,11 @@ class StanceJoints:
         stance = self._stances.get(name, Stance())
         if self._legs is None:
             stance = Stance(trunk=stance.trunk, head=stance.head, arms=stance.arms)
+        return self.values_of(stance)
+
+    @staticmethod
+    def values_of(stance: Stance) -> Array:
+        """Return the values of a stance, (15,)."""
         shift = (stance.aside, -stance.down, -stance.back)
         arms = (-stance.arms, 0.0, 0.0)
         return np.array([*shift, *stance.hips, *stance.trunk, *stance.head, *arms])
@@ -170,7 +179,7 @@ class StanceJoints:
         """
         degrees = self._shares @ values[3:].reshape(-1, 3)
         turns = rotations.from_rotation_vector(
-            rotation_vectors(self._axes, [tuple(row) for row in degrees.tolist()])
+            np.einsum("jkb,jb->jk", self._axes, np.radians(degrees))
         )
         local = pose.rotations.copy()
         local[self._joints] = rotations.multiply(local[self._joints], turns)
@@ -209,10 +218,25 @@ class StanceJoints:
         turned = Pose(moved, turned.rotations, turned.scales, turned.morphs)
         after = legs.frames(turned)
         ankles = legs.joints[:, 3].tolist()
+        drop = self._needed_drop(before, after)
+        if drop > 0.0:
+            turned, after = legs.lower_pelvis(turned, after, drop)
         feet = [
             multiply(before.rotations[ankle], conjugate(after.rotations[ankle])) for ankle in ankles
         ]
         return legs.bend(turned, after, [before.positions[ankle] for ankle in ankles], feet)
+
+    def _needed_drop(self, before: LegFrames, after: LegFrames) -> float:
+        """Return how far the pelvis is to come down so that all legs reach their feet [m]."""
+        legs, needed = self._legs, 0.0
+        assert legs is not None
+        for hip, ankle in legs.joints[:, [1, 3]].tolist():
+            (x, y, z), foot = after.positions[hip], before.positions[ankle]
+            # A leg that was straighter before may stay so.
+            most = max(MAX_EXTENSION * self._leg_length, math.dist(before.positions[hip], foot))
+            squared = most * most - (x - foot[0]) ** 2 - (z - foot[2]) ** 2
+            needed = max(needed, y - foot[1] - math.sqrt(max(squared, 0.0)))
+        return needed
 
 
 def _leg_length(legs: LegIK) -> float:

@@ -34,6 +34,7 @@ class GazeLayer:
         if looked is not None:
             target, tempo = context.in_character(looked.target), HEAD_LAG_S / lag_of(looked)
             share *= float(looked.influence != "EYES")
+        speaking = context.speaking
         pose = self._gaze.update(
             pose,
             target,
@@ -41,7 +42,8 @@ class GazeLayer:
             share,
             tempo=tempo,
             head_drop=context.expressivity.head_drop * posture_share(context),
-            head_turn=self._head_turn(context),
+            head_turn=self._head_turn(context) + speaking.nod,
+            averted=None if looked is not None else speaking.aversion,
         )
         return Found(pose, replace(context, gaze_shift=self._gaze.shift))
 

@@ -10,6 +10,7 @@ from cubeling.affect import Emotion
 from cubeling.characters.body.posture import Expressivity
 from cubeling.characters.control.command import CharacterCommand
 from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.control.speaking.state import NOT_SPEAKING, SpeakingState
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.pose import Array, Pose
 
@@ -44,6 +45,9 @@ class FrameContext:
 
     breath: float = 0.0
     """Filling of the lungs, as the posture layer found it, 0…1."""
+
+    speaking: SpeakingState = NOT_SPEAKING
+    """What is done with a speech besides gestures, as the speech layer found it."""
 
     @property
     def emotion(self) -> Emotion | None:
