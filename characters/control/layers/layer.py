@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -48,6 +48,15 @@ class FrameContext:
 
     speaking: SpeakingState = NOT_SPEAKING
     """What is done with a speech besides gestures, as the speech layer found it."""
+
+    def found(self, **values: Any) -> "FrameContext":
+        """Return the same with what a layer has found: other values of some fields.
+
+        `dataclasses.replace` would read every field by its name, which takes as long as a layer.
+        """
+        context = object.__new__(FrameContext)
+        context.__dict__.update(self.__dict__, **values)
+        return context
 
     @property
     def emotion(self) -> Emotion | None:

@@ -74,15 +74,17 @@ class SpokenSpeech:
         share = 1.0 if self._cut is None else 1.0 - ease((now - self._cut) / CUT_S, "gonio")
         return share * ease((now - self._joined) / JOIN_S, "gonio")
 
-    def over(self, pose: Pose, now: float, share: float) -> tuple[Pose, float]:
+    def over(self, pose: Pose, share: float) -> tuple[Pose, float]:
         """Return a pose with `share` of the gestures laid over it, and how much they cover it."""
         if self._beats is None:
             return pose, 0.0
-        own = self.body.clock.at(now - self.speech.start)
+        own = self.body.gesture_time
         weight = share * self._beats.weight(own)
         if weight <= 0.0:
             return pose, 0.0
-        return lay_over(pose, self._beats.joints, self._beats.turns(own), weight), weight
+        # A copy: what is laid over is overwritten, and these may be rows of the library.
+        turns = self._beats.turns(own).copy()
+        return lay_over(pose, self._beats.joints, turns, weight), weight
 
 
 class SpeechLayer:
@@ -104,20 +106,18 @@ class SpeechLayer:
         self._follow(speech, now)
         emphasis = 2.0 ** (0.0 if speech is None else speech.emphasis)
         size = context.expressivity.amplitude * emphasis
-        state = NOT_SPEAKING
-        arms = np.zeros((2, len(DOFS)))
-        for spoken in self._spoken:
-            own, share = now - spoken.speech.start, self._free * spoken.share(now)
-            pose, covered = spoken.over(pose, now, share * min(emphasis, 1.0))
-            arms += (1.0 - UNDER_GESTURE * covered) * share * size * spoken.body.arms_at(own)
-            nods = HANDS_SHARE if self._character.gestures is not None else 1.0
-            found = spoken.body.state(
-                own, context.elapsed, share * size * context.rest, share * nods * emphasis
-            )
-            state = state.with_later(found)
+        nods = emphasis * (1.0 if self._character.gestures is None else HANDS_SHARE)
+        state, arms = NOT_SPEAKING, np.zeros(2 * len(DOFS))
+        for number, spoken in enumerate(self._spoken):
+            body, share = spoken.body, self._free * spoken.share(now)
+            body.advance(now - spoken.speech.start)
+            pose, covered = spoken.over(pose, share * min(emphasis, 1.0))
+            arms += body.arms * ((1.0 - UNDER_GESTURE * covered) * share * size)
+            own = body.state(context.elapsed, share * size * context.rest, share * nods)
+            state = state.with_later(own) if number else own
         if arms.any():
             pose = self._arms.turn(pose, arms)
-        return Found(pose, replace(context, speaking=state))
+        return Found(pose, context.found(speaking=state))
 
     def _follow(self, speech: SpeechIntent | None, now: float) -> None:
         """Begin what is new, cut off what is interrupted, and forget what is over."""

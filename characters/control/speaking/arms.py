@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cubeling.characters.body.axes import body_axes
-from cubeling.characters.control.speaking.beats import Pulses, SyllableSwing
+from cubeling.characters.control.speaking.beats import pulses, syllable_swing
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
@@ -38,40 +38,31 @@ LEAD_S, TAIL_S = 0.5, 0.9
 """From how long before a speech to how long after it the arms live [s]."""
 
 
-class SpeakingArms:
-    """The arms in one speech, planned for the whole of it."""
+def arm_movement(
+    times: Array,
+    accents: Sequence[Accent],
+    syllables: Sequence[Syllable],
+    end: float,
+    rng: np.random.Generator,
+) -> Array:
+    """Return what the left and the right arm do at `times` [s] of a speech, (times, 8) [degrees].
 
-    def __init__(
-        self,
-        accents: Sequence[Accent],
-        syllables: Sequence[Syllable],
-        end: float,
-        rng: np.random.Generator,
-    ) -> None:
-        self.end = end + TAIL_S
-        """When they rest again [s]."""
-        strengths = np.array([each.strength for each in accents])
-        # One hand leads in each beat; the other one joins in.
-        shares = rng.uniform(0.35, 1.0, (len(accents), 2))
-        sizes = strengths[:, None, None] * shares[..., None] * STROKE_DEG
-        self._strokes = Pulses(
-            [each.time for each in accents], sizes.reshape(len(accents), 2 * len(DOFS)), STROKE_KEYS
-        )
-        self._swing = SyllableSwing(syllables)
-        self._swings = np.stack([SWING_DEG, SWING_DEG * rng.uniform(0.5, 0.8)])
-        self._rates = math.tau * rng.uniform(*DRIFT_HZ, (2, len(DOFS)))
-        self._phases = rng.uniform(0.0, math.tau, (2, len(DOFS)))
-
-    def at(self, time: float) -> Array:
-        """Return what the left and right arm do at a time of the speech [s], (2, 4) [degrees]."""
-        here = smoothstep(min(max((time + LEAD_S) / LEAD_S, 0.0), 1.0))
-        here *= smoothstep(min(max((self.end - time) / TAIL_S, 0.0), 1.0))
-        turns: Array = np.sin(self._rates * time + self._phases) * DRIFT_DEG
-        turns += OPEN_DEG
-        turns *= here
-        turns += self._strokes.at(time).reshape(2, -1)
-        turns += self._swings * self._swing.at(time)
-        return turns
+    `end` is that of its sound [s].
+    """
+    strengths = np.array([each.strength for each in accents])
+    # One hand leads in each beat; the other one joins in.
+    shares = rng.uniform(0.35, 1.0, (len(accents), 2))
+    strokes = strengths[:, None, None] * shares[..., None] * STROKE_DEG
+    swings = np.concatenate([SWING_DEG, SWING_DEG * rng.uniform(0.5, 0.8)])
+    rates = math.tau * rng.uniform(*DRIFT_HZ, 2 * len(DOFS))
+    phases = rng.uniform(0.0, math.tau, 2 * len(DOFS))
+    here = smoothstep(((times + LEAD_S) / LEAD_S).clip(0.0, 1.0))
+    here *= smoothstep(((end + TAIL_S - times) / TAIL_S).clip(0.0, 1.0))
+    held = np.tile(OPEN_DEG, 2) + np.sin(np.outer(times, rates) + phases) * np.tile(DRIFT_DEG, 2)
+    held += np.outer(syllable_swing(times, syllables), swings)
+    sizes = strokes.reshape(len(accents), 2 * len(DOFS))
+    found: Array = here[:, None] * held
+    return found + pulses(times, [each.time for each in accents], sizes, STROKE_KEYS)
 
 
 class ArmJoints:
@@ -102,10 +93,10 @@ class ArmJoints:
         self._vectors = np.radians(np.einsum("jab,jdb->jad", axes, weights))
 
     def turn(self, pose: Pose, degrees: Array) -> Pose:
-        """Return a pose with its arms turned by what they do, (2, 4) [degrees]."""
+        """Return a pose with its arms turned by what they do, (8,) [degrees]."""
         if not len(self._joints):
             return pose
-        turns = rotations.from_rotation_vector(self._vectors @ degrees.ravel())
+        turns = rotations.from_rotation_vector(self._vectors @ degrees)
         local = pose.rotations.copy()
         local[self._joints] = rotations.multiply(local[self._joints], turns)
         return Pose(pose.translations, local, pose.scales, pose.morphs)

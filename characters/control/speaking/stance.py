@@ -1,13 +1,12 @@
 """How pelvis, knees, trunk and head join in a speech, as values of `StanceJoints`."""
 
-from bisect import bisect_right
 from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from cubeling.characters.behaviour.realization.stances import Stance, StanceJoints
-from cubeling.characters.control.speaking.beats import Pulses
+from cubeling.characters.control.speaking.beats import pulses
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.smoothing import smoothstep
 from cubeling.characters.speech.phrases import Phrase
@@ -48,65 +47,44 @@ LEAD_S = 0.3
 """It sets off so long before the first word [s]."""
 
 
-class SpeakingStance:
-    """The stance of one who speaks, planned for a whole speech.
+def stance_movement(
+    times: Array,
+    phrases: Sequence[Phrase],
+    accents: Sequence[Accent],
+    shifts: Sequence[float],
+    end: float,
+    rng: np.random.Generator,
+) -> Array:
+    """Return the stance of one who speaks at `times` [s], (times, 15).
 
     Beats go with accents. Each phrase has a place of its own, near the usual one. Weight shifts at
-    `shifts` [s]: from the middle to a side, and on to the other one.
+    `shifts` [s]: from the middle to a side, and on to the other one. At the `end` [s] all goes back
+    to the middle.
     """
-
-    def __init__(
-        self,
-        phrases: Sequence[Phrase],
-        accents: Sequence[Accent],
-        shifts: Sequence[float],
-        end: float,
-        rng: np.random.Generator,
-    ) -> None:
-        sizes = MIN_SIZE + (1.0 - MIN_SIZE) * np.array([a.strength for a in accents])
-        sides = rng.uniform(-1.0, 1.0, (len(accents), 1))
-        beats = sizes[:, None] * (_BEAT + sides * _BEAT_ASIDE)
-        self._beats = Pulses([each.time for each in accents], beats, BEAT_KEYS)
-        places = [
-            (each.start - LEAD_S, PHRASE_S, rng.uniform(-1.0, 1.0, len(_PHRASE)) * _PHRASE)
-            for each in phrases
-        ]
-        places.append((end, PHRASE_S, np.zeros(len(_PHRASE))))
-        self._place = _Places(places)
-        side, leaning = rng.choice((-1.0, 1.0)), []
-        for time in shifts:
-            leaning.append((time, SHIFT_S, _shifted(side)))
-            side = -side
-        self._weight = _Places([*leaning, (end, SHIFT_S, np.zeros(len(_PHRASE)))])
-
-    def values(self, time: float) -> Array:
-        """Return the stance at a time of the speech [s], (15,)."""
-        return self._beats.at(time) + self._place.at(time) + self._weight.at(time)
+    sizes = MIN_SIZE + (1.0 - MIN_SIZE) * np.array([each.strength for each in accents])
+    sides = rng.uniform(-1.0, 1.0, (len(accents), 1))
+    beats = sizes[:, None] * (_BEAT + sides * _BEAT_ASIDE)
+    found = pulses(times, [each.time for each in accents], beats, BEAT_KEYS)
+    middle = np.zeros(StanceJoints.VALUES)
+    places = [(p.start - LEAD_S, rng.uniform(-1.0, 1.0, len(middle)) * _PHRASE) for p in phrases]
+    found += _ways(times, [*places, (end, middle)], PHRASE_S)
+    side = rng.choice((-1.0, 1.0))
+    leaning = []
+    for time in shifts:
+        values = _SHIFT * side
+        values[1] = _SHIFT[1]  # it comes down on either side
+        leaning.append((time, values))
+        side = -side
+    return found + _ways(times, [*leaning, (end, middle)], SHIFT_S)
 
 
-def _shifted(side: float) -> Array:
-    """Return the stance with the weight on a side; it comes down on either."""
-    values = _SHIFT * side
-    values[1] = _SHIFT[1]
-    return values
-
-
-class _Places:
-    """Values that go from one place to the next, and stay there."""
-
-    def __init__(self, places: Sequence[tuple[float, float, Array]]) -> None:
-        self._starts = [start for start, _, _ in places]
-        gaps = [b - a for a, b in pairwise(self._starts)] + [np.inf]
-        self._lengths = [
-            min(length, max(gap, 1e-3)) for (_, length, _), gap in zip(places, gaps, strict=True)
-        ]
-        self._values = [np.zeros(StanceJoints.VALUES), *(values for _, _, values in places)]
-
-    def at(self, time: float) -> Array:
-        """Return the values at a time [s]."""
-        place = bisect_right(self._starts, time)
-        if place == 0:
-            return self._values[0]
-        before, after = self._values[place - 1 : place + 1]
-        share = (time - self._starts[place - 1]) / self._lengths[place - 1]
-        return after if share >= 1.0 else before + (after - before) * smoothstep(share)
+def _ways(times: Array, places: Sequence[tuple[float, Array]], length: float) -> Array:
+    """Return values that go from one place to the next in at most so long [s], and stay there."""
+    found = np.zeros((len(times), StanceJoints.VALUES))
+    before = np.zeros(StanceJoints.VALUES)
+    for (start, values), (following, _) in pairwise([*places, (np.inf, before)]):
+        share = (times - start) / min(length, max(following - start, 1e-3))
+        begun = share >= 0.0
+        found[begun] = before + smoothstep(share[begun].clip(0.0, 1.0))[:, None] * (values - before)
+        before = values
+    return found

@@ -50,7 +50,7 @@ class PlayedSegment:
         low = int(frame)
         before = self.turns[low]
         mixed: Array = before + (self.turns[low + 1] - before) * (frame - low)
-        mixed /= np.sqrt(np.einsum("ji,ji->j", mixed, mixed))[:, None]
+        mixed /= np.sqrt(np.vecdot(mixed, mixed))[:, None]
         return mixed
 
 

@@ -25,6 +25,9 @@ from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
 PAUSE_S = 10.0, 24.0
 """Shortest and longest time between acts [s]."""
 
+NEUTRAL_REGION = region_of("neutral")
+"""Emotions that leave room for acts."""
+
 TRANSITION_S = 0.7
 """How long it goes over into an act and back [s]."""
 
@@ -86,7 +89,7 @@ class StandingPerson:
         """Show an emotion from now on, or none."""
         emotion = emotion or NEUTRAL
         self.idle.feel(emotion)
-        self._neutral = region_of("neutral").contains(emotion)
+        self._neutral = NEUTRAL_REGION.contains(emotion)
 
     def talk(self, shift: bool | None) -> None:
         """Shift the weight when a speech asks for it, or not until then; None in silence."""
