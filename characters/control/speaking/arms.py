@@ -16,7 +16,7 @@ from cubeling.characters.speech.speech import Accent, Syllable
 DOFS = ("swing forward", "swing out", "bend elbow", "bend wrist")
 """What one arm does [degrees each]."""
 
-OPEN_DEG = np.array([4.0, 12.0, 12.0, 0.0])
+OPEN_DEG = np.array([4.0, 9.0, 14.0, 0.0])
 """How an arm is held while one speaks, beside how it hangs."""
 
 STROKE_DEG = np.array([3.5, 2.5, 11.0, -7.0])

@@ -46,9 +46,12 @@ HEAD_WEAK_RAD, HEAD_STRONG_RAD = np.deg2rad(1.5), np.deg2rad(6.5)
 TILT_SHARE = 0.35
 """How far it tilts and turns to a side meanwhile, at most, as a share of that."""
 
-HEAD_KEYS = ((-0.52, 0.0), (-0.3, -0.4), (-0.08, 1.0), (0.36, 0.0))
-"""It is lifted, down and back again, from the accent [s]: ahead of the hands, whose apex is some
-0.1 s before the accent."""
+HEAD_KEYS = ((-0.42, 0.0), (-0.22, -0.4), (0.03, 1.0), (0.42, 0.0))
+"""It is lifted, down and back again, from the accent [s]."""
+
+
+ASIDE_KEYS = tuple((time, abs(value)) for time, value in HEAD_KEYS)
+"""It is aside while it is lifted too [s]."""
 
 
 def head_beats(times: Array, accents: Sequence[Accent], rng: np.random.Generator) -> Array:
@@ -60,9 +63,11 @@ def head_beats(times: Array, accents: Sequence[Accent], rng: np.random.Generator
     """
     strengths = np.array([each.strength for each in accents])
     nods = HEAD_WEAK_RAD + (HEAD_STRONG_RAD - HEAD_WEAK_RAD) * strengths
-    aside = TILT_SHARE * rng.uniform(-1.0, 1.0, (2, len(accents)))
-    sizes = np.stack([nods, nods * aside[0], nods * aside[1]], axis=1)
-    return pulses(times, [each.time for each in accents], sizes, HEAD_KEYS)
+    turn, tilt = TILT_SHARE * rng.uniform(-1.0, 1.0, (len(accents), 2)).T
+    at = [each.time for each in accents]
+    nod = pulses(times, at, nods[:, None], HEAD_KEYS)
+    aside = pulses(times, at, np.stack([nods * turn, nods * tilt], axis=1), ASIDE_KEYS)
+    return np.concatenate([nod, aside], axis=1)
 
 
 SYLLABLE_S = 0.22

@@ -39,6 +39,10 @@ RATE_HZ = 60.0
 LEAD_S, TAIL_S = 0.8, 1.6
 """From how long before the sound to how long after it a body moves with a speech [s]."""
 
+HEAD_LEAD_S = 0.11
+"""How long nods come before their accents in a body that moves as a whole [s]: hands have their
+apex some 0.1 s before the accent, and follow the head and the trunk."""
+
 _NOD, _STANCE, _ARMS, _CLOCK = slice(0, 3), slice(3, 18), slice(18, 26), 26
 
 
@@ -54,15 +58,22 @@ class SpokenMovement:
 
     @staticmethod
     def of(
-        utterance: Utterance, phrases: Sequence[Phrase], shifts: Sequence[float], seed: int
+        utterance: Utterance,
+        phrases: Sequence[Phrase],
+        shifts: Sequence[float],
+        seed: int,
+        head_lead: float = HEAD_LEAD_S,
     ) -> "SpokenMovement":
-        """Return the movement of a speech with shifts of weight at some times [s]."""
-        rngs = [np.random.default_rng([seed, number]) for number in range(2, 5)]
+        """Return the movement of a speech with shifts of weight at some times [s].
+
+        `head_lead` is how long nods come before their accents [s].
+        """
+        rngs = [np.random.default_rng(each) for each in (seed, [seed, 3], [seed, 4])]
         accents, end = utterance.accents, utterance.duration
         count = math.ceil((LEAD_S + end + TAIL_S) * RATE_HZ) + 1
         times = np.arange(count) / RATE_HZ - LEAD_S
         parts = (
-            head_beats(times, accents, rngs[0]),
+            head_beats(times + head_lead, accents, rngs[0]),
             stance_movement(times, phrases, accents, shifts, end, rngs[1]),
             arm_movement(times, accents, utterance.syllables, end, rngs[2]),
             syllable_clock(times, utterance)[:, None],
@@ -90,7 +101,8 @@ class SpokenBody:
         shifts = speech_shifts(speech, seed) if own_shifts else ()
         seed = speech_seed(speech, seed)
         self._lively, self._length = speech.profile.liveliness, said.duration
-        self._movement = SpokenMovement.of(said, phrases, shifts, seed)
+        lead = HEAD_LEAD_S if self._lively else 0.0
+        self._movement = SpokenMovement.of(said, phrases, shifts, seed, lead)
         self._aversions = Aversions(said, np.random.default_rng([seed, 5]))
         self._emotions = emotions_of(said, phrases)
         self._ends = [each.end for each in phrases]
