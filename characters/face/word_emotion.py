@@ -83,19 +83,19 @@ def told_emotion(sentence: str, language: str) -> Emotion | None:
     for phrase, emotion in phrases.items():
         counts[emotion] += PHRASE_WEIGHT * text.count(f" {phrase} ")
     for number, word in enumerate(said):
-        emotion = emotions.get(word)
-        if emotion is None:
+        told = emotions.get(word)
+        if told is None:
             continue
         if negations.isdisjoint(said[max(number - NEGATION_REACH, 0) : number]):
-            counts[emotion] += 1
-        elif WORD_PLACES[emotion][0] > 0.0:
+            counts[told] += 1
+        elif WORD_PLACES[told][0] > 0.0:
             counts["sad"] += 1
     counts = +counts
     if not counts:
         return None
-    word = max(counts, key=lambda each: counts[each])
-    valence, arousal = WORD_PLACES[word]
-    return Emotion(STRENGTH * valence, STRENGTH * arousal, word)
+    most = max(counts, key=lambda each: counts[each])
+    valence, arousal = WORD_PLACES[most]
+    return Emotion(STRENGTH * valence, STRENGTH * arousal, most)
 
 
 def face_of(felt: Emotion | None, told: Emotion | None) -> Emotion | None:

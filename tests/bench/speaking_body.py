@@ -40,7 +40,7 @@ RATE = 30
 LEAD_S, TAIL_S, SETTLE_S = 1.5, 1.5, 0.5
 LAG_S = 0.2
 OTHERS = 100
-SEEDS = 2
+SEEDS = 1
 LISTENER = np.array([0.1, 0.16, 0.7])
 STILL_M = 0.01
 """A wrist that stays within such a ball beside the chest does not move [m]."""
