@@ -123,7 +123,8 @@ class SpokenBody:
     @property
     def arms(self) -> Array:
         """What the arms do besides gestures, (8,) [degrees]."""
-        return self._row[_ARMS] * self._lively
+        degrees: Array = self._row[_ARMS] * self._lively
+        return degrees
 
     def state(self, elapsed: float, body: float, head: float) -> SpeakingState:
         """Return what is done with the layers after that of speech.
