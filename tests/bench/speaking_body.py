@@ -80,9 +80,6 @@ class Played:
     morphs: Array
     """(n, morphs)."""
 
-    faces: Array
-    """Where the head faces, (n, 3)."""
-
     hips_deg: Array
     """Bend of the trunk, (n,) [degrees]."""
 
@@ -105,9 +102,8 @@ def play(
     length = seconds if utterance is None else utterance.duration + TAIL_S
     numbers = range(-round((LEAD_S + SETTLE_S) * RATE), round(length * RATE))
     joints = {p: j for p in PARTS if (j := character.anatomy.joint(p)) is not None}
-    head = joints["head"]
     rest = character.skeleton.rest.globals(character.skeleton)
-    times, places, morphs, faces, bends = [], [], [], [], []
+    times, places, morphs, bends = [], [], [], []
     for number in numbers:
         now = number / RATE
         posed = animator.update(
@@ -121,7 +117,6 @@ def play(
         times.append(now)
         places.append(world[[*joints.values()], :, 3])
         morphs.append(np.zeros(0) if posed.pose.morphs is None else posed.pose.morphs)
-        faces.append(world[head, :, :3] @ rest[head, :3, :3].T @ [0.0, 0.0, 1.0])
         chest = world[joints.get("chest", joints["hips"]), :, :3]
         up = chest @ rest[joints.get("chest", joints["hips"]), :3, :3].T @ [0.0, 1.0, 0.0]
         bends.append(math.degrees(math.atan2(up[2], up[1])))
@@ -130,7 +125,6 @@ def play(
         np.array(times),
         {part: stacked[:, number] for number, part in enumerate(joints)},
         np.array(morphs),
-        np.array(faces),
         np.array(bends),
     )
 
@@ -281,13 +275,6 @@ def blinks(character: Character, played: Played) -> tuple[float, float]:
     return 60.0 * starts * RATE / len(closed), float(closed.mean())
 
 
-def away_s(played: Played) -> Array:
-    """Return whether the head faces elsewhere than it mostly does, (n,)."""
-    usual = np.median(played.faces, axis=0)
-    usual /= np.linalg.norm(usual)
-    return np.degrees(np.arccos(np.clip(played.faces @ usual, -1.0, 1.0)))
-
-
 def lead_ms(leader: Array, follower: Array) -> float:
     """Return by how much the first of two speeds is ahead, at their greatest correlation [ms]."""
     lags = range(-round(0.4 * RATE), round(0.4 * RATE) + 1)
@@ -404,5 +391,4 @@ def _figures(
         "trunk ahead of the hands": f"{lead_ms(lean, hand_speed(played)[inside]):.0f} ms",
         "happy face in an accusation, mood happy": f"{smile(character, happy, 'happy'):.2f}",
         "angry face in an accusation, mood happy": f"{smile(character, happy, 'angry'):.2f}",
-        "head turned by more than 3°": f"{100 * (away_s(played)[inside] > 3.0).mean():.0f} %",
     }
