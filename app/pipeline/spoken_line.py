@@ -1,6 +1,6 @@
 """A line that the character says: it enters the pipeline from a voice, a file or a recording."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cubeling.characters import CharacterCommand, SpeechIntent
 from cubeling.characters.speech import DEFAULT_PROFILE, Samples, SpeechProfile, Utterance
@@ -47,4 +47,7 @@ class Speaking:
         over = self._speech is not None and now > self._speech.end + SUBTITLE_S
         if over or silence or not command.visible:
             self.line = self._speech = None
-        return self._speech
+        if self._speech is None or not self._speech.profile.cube_emphasis:
+            return self._speech
+        knob = self._speech.profile.cube_emphasis * min(max(command.weight, -1.0), 1.0)
+        return replace(self._speech, emphasis=knob)

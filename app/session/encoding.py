@@ -117,8 +117,13 @@ def _upgrade_content(kind: type[Any], content: Any) -> Any:
     Before `affect.Emotion` held its word, an emotion had a label next to it, and the intents of a
     command were single fields, of which the oldest sessions lack some. A shake was a field of its
     own among the controls. All that was before sessions held the version of their format: these
-    fields tell the versions apart.
+    fields tell the versions apart. Before a profile had `liveliness`, a speech moved only arms and
+    head; so it does in a replay.
     """
+    speech = content.get("speech")
+    if isinstance(speech, dict) and "liveliness" not in speech.get("profile", {"liveliness": 0}):
+        still = {**speech["profile"], "liveliness": 0.0}
+        content = {**content, "speech": {**speech, "profile": still}}
     if kind is CubeControls and "shaken" in content:
         controls = {key: value for key, value in content.items() if key != "shaken"}
         return {**controls, "gestures": ["shaken"] if content["shaken"] else []}

@@ -8,6 +8,7 @@ Guitton and Volle, "Gaze control in humans", 1987).
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
+    add,
     conjugate,
     from_rotation_vector,
     multiply,
@@ -39,6 +41,20 @@ EYES_ALONE_RAD = math.radians(16)  # the eyes alone make turns that are much sma
 HEAD_YAW_SHARE, HEAD_PITCH_SHARE = 0.95, 0.8  # of large turns; the eyes help to look up and down
 HEAD_LAG_S, EYE_LAG_S = 0.28, 0.035
 _AHEAD: Vector = (0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Aversion:
+    """A direction beside what is looked at."""
+
+    yaw: float
+    """To the left [rad]."""
+
+    pitch: float
+    """Upwards [rad]."""
+
+    head_share: float
+    """Share of the way that the head goes along, 0…1."""
 
 
 class Gaze:
@@ -89,6 +105,7 @@ class Gaze:
         tempo: float = 1.0,
         head_drop: float = 0.0,
         head_turn: Array | None = None,
+        averted: Aversion | None = None,
     ) -> Pose:
         """Advance by a time [s] and return the pose with head and eyes turned.
 
@@ -107,6 +124,8 @@ class Gaze:
         head_turn
             How it nods and turns besides, a rotation vector about the chest's axes, (3,) [rad];
             the eyes compensate.
+        averted
+            How far the gaze is beside the point; None for on it.
         """
         joints = self._joints
         if joints is None:
@@ -123,6 +142,13 @@ class Gaze:
         self.shift = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
         self._aim = aim
         turn = (0.0, 0.0) if aim is None else _head_turn(aim, held, head_share)
+        if averted is not None and aim is not None and point is not None:
+            share = averted.head_share * head_share
+            turn = turn[0] + share * averted.yaw, turn[1] + share * averted.pitch
+            aim = aim[0] + averted.yaw, aim[1] + averted.pitch
+            eyes = middle(joints.eye_places(self._turned))
+            far = math.dist(point, eyes)
+            point = add(eyes, rotate(body, _direction(aim, far)))
         lag = HEAD_LAG_S / tempo
         self._yaw, self._yaw_speed = damped_spring(
             self._yaw, self._yaw_speed, turn[0], elapsed, lag
@@ -250,6 +276,13 @@ def _angles(direction: Vector) -> tuple[float, float]:
     """Return yaw to the left and pitch upwards [rad] of a direction: left, up, forward."""
     x, y, z = direction
     return math.atan2(x, z), math.atan2(y, math.hypot(x, z))
+
+
+def _direction(angles: tuple[float, float], length: float) -> Vector:
+    """Return what is so far in the direction of a yaw to the left and a pitch upwards [rad]."""
+    yaw, pitch = angles
+    flat = length * math.cos(pitch)
+    return flat * math.sin(yaw), length * math.sin(pitch), flat * math.cos(yaw)
 
 
 def _turn_between(start: tuple[float, float], end: tuple[float, float]) -> Vector:

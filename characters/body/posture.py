@@ -115,6 +115,7 @@ class ExpressivityFilter:
 
     def __init__(self) -> None:
         self._valence = self._arousal = (0.0, 0.0)
+        self._place = (0.0, 0.0)  # for which the value holds
         self.value = NEUTRAL_EXPRESSIVITY
         """The present expressivity."""
 
@@ -126,11 +127,15 @@ class ExpressivityFilter:
             return NEUTRAL_EXPRESSIVITY
         self._valence = damped_spring(*self._valence, valence, elapsed, EXPRESSIVITY_LAG_S)
         self._arousal = damped_spring(*self._arousal, arousal, elapsed, EXPRESSIVITY_LAG_S)
+        place = self._valence[0], self._arousal[0]
+        if math.dist(place, self._place) < NEGLIGIBLE_AFFECT and not neutral:
+            return self.value
+        self._place = place
         if neutral and max(map(abs, (*self._valence, *self._arousal))) < NEGLIGIBLE_AFFECT:
             self._valence = self._arousal = (0.0, 0.0)
             self.value = NEUTRAL_EXPRESSIVITY
         else:
-            self.value = expressivity_of(self._valence[0], self._arousal[0])
+            self.value = expressivity_of(*place)
         return self.value
 
 

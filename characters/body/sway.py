@@ -106,7 +106,7 @@ class BodySway:
         if calm > 1e-3:
             waves = np.sin(self._rates * self._time + self._phases).sum(0)
             waves *= calm * expressivity.amplitude / math.sqrt(_WAVE_COUNT)
-            vectors += np.einsum("ja,jak->jk", waves, self._sway)
+            vectors += (waves[:, None] @ self._sway)[:, 0]
         if posture is not None:
             posture[: len(vectors)] += vectors
             vectors = posture

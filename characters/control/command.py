@@ -59,6 +59,9 @@ class SpeechIntent:
     profile: SpeechProfile = DEFAULT_PROFILE
     """How it is said with the body."""
 
+    emphasis: float = 0.0
+    """How much more, or less, body and mouth stress it in this frame, −1…1."""
+
     @property
     def end(self) -> float:
         """When its sound ends [s]."""

@@ -65,6 +65,12 @@ class SpeechProfile:
     face_emphasis: float = 0.0
     """Added to the strength of accents for the mouth, −1…1."""
 
+    liveliness: float = 1.0
+    """How far weight, hips, trunk, arms at rest, eyes and face join in; 0 leaves them still."""
+
+    cube_emphasis: float = 0.0
+    """How far a turn of the cube emphasises what is being said, 0…1; 0 for not at all."""
+
     visemes: str = "oculus"
     """The set of visemes."""
 
@@ -157,6 +163,8 @@ RANGES: dict[str, tuple[float, float]] = {
     "forearm_weight": (0.0, 10.0),
     "gesture_emphasis": (-1.0, 1.0),
     "face_emphasis": (-1.0, 1.0),
+    "liveliness": (0.0, 1.5),
+    "cube_emphasis": (0.0, 1.0),
     "accent_threshold": (0.0, 1.0),
     "accent_distance": (0.0, MAX_DISTANCE_S),
 }

@@ -8,7 +8,6 @@ from cubeling.characters.skeleton.scalar_quaternions import (
     Vector,
     between,
     cross,
-    dot,
     length,
     multiply,
     rotate,
@@ -16,7 +15,6 @@ from cubeling.characters.skeleton.scalar_quaternions import (
 )
 
 _MAX_EXTENSION = 0.999  # of a leg's length
-_LEFT = (1.0, 0.0, 0.0)
 _STRAIGHT_KNEE_AXIS = (-1.0, 0.0, 0.0)  # of a straight leg, whose plane is undefined
 _MAX_OVEREXTENSION = 0.4  # sine of the angle by which a knee may be bent the wrong way
 _MIN_STRAIGHT_RAD = 1.6  # between thigh and shin: a knee that is bent more is bent on purpose
@@ -38,29 +36,34 @@ def reach(
     >>> [round(value, 6) + 0.0 for value in (x + sx, 2 + y + sy, z + sz)]
     [0.0, 0.5, 0.0]
     """
-    thigh, shin, aim = subtract(hip, knee), subtract(ankle, knee), subtract(target, hip)
-    long, short = length(thigh), length(shin)
+    # Written out: legs bend in every frame, and a call costs as much as the product in it.
+    tx, ty, tz = thigh = subtract(hip, knee)
+    sx, sy, sz = shin = subtract(ankle, knee)
+    aim = subtract(target, hip)
+    long = math.sqrt(tx * tx + ty * ty + tz * tz)
+    short = math.sqrt(sx * sx + sy * sy + sz * sz)
     wanted = min(max(length(aim), abs(long - short) + 1e-6 * long), _MAX_EXTENSION * (long + short))
-    across = cross(thigh, shin)
-    bend = math.atan2(length(across), dot(thigh, shin))
+    ax, ay, az = ty * sz - tz * sy, tz * sx - tx * sz, tx * sy - ty * sx
+    size = math.sqrt(ax * ax + ay * ay + az * az)
+    bend = math.atan2(size, tx * sx + ty * sy + tz * sz)
     straightened = IDENTITY
-    ahead = cross(_LEFT, thigh)
-    stretched = dot(shin, ahead) / (short * max(length(ahead), 1e-9))
-    overextended = 0.0 < stretched < _MAX_OVEREXTENSION and bend > _MIN_STRAIGHT_RAD
+    # The left crossed with the thigh.
+    forward, flat = sz * ty - sy * tz, math.sqrt(tz * tz + ty * ty)
+    overextended = 0.0 < forward < _MAX_OVEREXTENSION * short * flat and bend > _MIN_STRAIGHT_RAD
     if overextended and knees_ahead:
         # A transition has stretched the knee too far: it bends as far the right way.
-        scale = 2.0 * dot(shin, ahead) / dot(ahead, ahead)
-        x, y, z = (s - scale * a for s, a in zip(shin, ahead, strict=True))
-        straightened = between(shin, (x, y, z))
-        shin = (x, y, z)
-        across = cross(thigh, shin)
-    size = length(across)
+        scale = 2.0 * forward / (flat * flat)
+        shin = (sx, sy + scale * tz, sz - scale * ty)
+        straightened = between((sx, sy, sz), shin)
+        ax, ay, az = cross(thigh, shin)
+        size = length((ax, ay, az))
     axis = _STRAIGHT_KNEE_AXIS
     if size > 1e-9 * long * short:
-        axis = (across[0] / size, across[1] / size, across[2] / size)
+        axis = (ax / size, ay / size, az / size)
     cosine = (long * long + short * short - wanted * wanted) / (2 * long * short)
     half = (math.acos(min(max(cosine, -1.0), 1.0)) - bend) / 2
     sine = math.sin(half)
     lower = (axis[0] * sine, axis[1] * sine, axis[2] * sine, math.cos(half))
     x, y, z = rotate(lower, shin)
-    return between((x - thigh[0], y - thigh[1], z - thigh[2]), aim), multiply(lower, straightened)
+    upper = between((x - tx, y - ty, z - tz), aim)
+    return upper, lower if straightened is IDENTITY else multiply(lower, straightened)

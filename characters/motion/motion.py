@@ -205,3 +205,7 @@ class StandingMotion(Motion, Protocol):
     def feel(self, emotion: Emotion | None) -> None:
         """Show an emotion from now on, or none."""
         ...
+
+    def talk(self, shift: bool | None) -> None:
+        """Shift the weight when a speech asks for it, or not until then; None in silence."""
+        ...

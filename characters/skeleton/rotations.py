@@ -187,7 +187,7 @@ def from_rotation_vector(vector: ArrayLike) -> Array:
     True
     """
     vector = np.asarray(vector, float)
-    half = np.sqrt(np.einsum("...i,...i->...", vector, vector))[..., None] / 2
+    half = np.sqrt(np.vecdot(vector, vector))[..., None] / 2
     # Near zero the sine equals its angle to the last bit.
     safe = np.maximum(half, 1e-9)
     q = np.empty((*vector.shape[:-1], 4))

@@ -58,6 +58,17 @@ class Accent:
 
 
 @dataclass(frozen=True)
+class Syllable:
+    """A syllable of a speech."""
+
+    time: float
+    """When its nucleus is loudest, from the start of the speech [s]."""
+
+    loudness: float
+    """0…1, between the quiet and the loud ones of the speech."""
+
+
+@dataclass(frozen=True)
 class GestureSpan:
     """A gesture that a tagged text asks for."""
 
@@ -95,6 +106,9 @@ class Utterance:
 
     gestures: tuple[GestureSpan, ...] = ()
     """What a tagged text asks for; spans may cross."""
+
+    syllables: tuple[Syllable, ...] = ()
+    """The syllables, in order; () if the sound was not measured."""
 
 
 @dataclass(frozen=True, eq=False)

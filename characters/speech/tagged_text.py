@@ -4,7 +4,8 @@ The markup is that of Egges, "Real-time animation of interactive virtual humans"
 
     <begin_gesture id="g1" anim="shake"/>Sorry, I have no idea.<end_gesture id="g1"/>
 
-Both tags stand for themselves, so spans may nest or cross.
+Both tags stand for themselves, so spans may nest or cross. `<topic/>` marks a change of topic, as
+an empty line does.
 """
 
 import re
@@ -29,7 +30,11 @@ TEXT_FILE = FileKind(
 MIN_SPAN_S = 0.4
 """Shortest time of a gesture [s]: one around a short word, or around none, is made longer."""
 
+NEW_TOPIC = "\n\n"
+"""What parts two topics of a text: an empty line."""
+
 _TAG = re.compile(r"<\s*(begin|end)_gesture\b([^<>]*?)/?\s*>")
+_TOPIC = re.compile(r"\s*<\s*topic\s*/\s*>\s*")
 _ATTRIBUTE = re.compile(r"""(\w+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 
 
@@ -80,6 +85,7 @@ class TaggedText:
         length = copied = 0
         begun: dict[str, tuple[str, int]] = {}
         spans: list[TaggedSpan] = []
+        marked = _TOPIC.sub(NEW_TOPIC, marked)
         for tag in _TAG.finditer(marked):
             said = printable(tag[0])
             parts.append(marked[copied : tag.start()])

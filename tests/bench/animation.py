@@ -1,15 +1,22 @@
-"""Time of one update of a character: `python -m tests.bench.animation`.
+"""Time of one update of a character: `python -m tests.bench.animation [--against CHECKOUT]`.
 
 A full update includes locomotion at a changing speed, a layer of waving arms, head and eyes that
 follow a point, blinks, breath, foot lock, and a mood in face and posture. Exits with 1 if its
 median exceeds `LIMIT_MS`, or `HANDS_LIMIT_MS` while a hand reaches for a moving place and the
 other one waves.
+
+With `--against`, the same updates are played by this checkout and by another one, such as that of
+an older commit, in turns, and the ratio of their CPU times is printed; exits with 1 if a full
+update takes longer than there.
 """
 
+import argparse
+import subprocess
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from rich.console import Console
@@ -27,7 +34,11 @@ from cubeling.characters import (
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.gestures.timing import natural_times
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
+from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.motion.layers import overlaid
+from cubeling.characters.speech.mouth import phones_from_sound
+from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.speech import Speech
 
 FRAMES = 600
 
@@ -121,6 +132,107 @@ def with_hands(animator: Animator, speed: float) -> Callable[[int], object]:
     return work
 
 
+def speaking(animator: Animator, mood: str = "happy") -> Callable[[int], object]:
+    """Return the work of who stands, looks at somebody and says something, over and over."""
+    rate, seconds = 16000, 10.0
+    times = np.arange(round(seconds * rate)) / rate
+    # A buzz in syllables, four a second, whose pitch and loudness differ.
+    syllable = np.floor(4.0 * times)
+    loudness = (0.3 + 0.7 * np.abs(np.sin(1.3 * syllable))) * np.maximum(
+        np.sin(8.0 * np.pi * times), 0.0
+    )
+    phase = np.cumsum(140.0 + 40.0 * np.sin(2.1 * syllable)) * 2.0 * np.pi / rate
+    buzz = (0.3 * loudness * sum(np.sin(n * phase) / n for n in range(1, 8))).astype(np.float32)
+    said = utterance_of(Speech(buzz, rate, phones=phones_from_sound(buzz, rate)))
+    emotion = Emotion(0.5, 0.4, mood) if mood else None
+
+    def work(number: int) -> object:
+        now = number / 30
+        speech = SpeechIntent(said, (seconds + 1.0) * (now // (seconds + 1.0)))
+        gaze = np.array([0.1, 0.16, 0.7])
+        return animator.update(CharacterCommand(now, gaze=gaze, emotion=emotion, speech=speech))
+
+    return work
+
+
+COMPARED: dict[str, Callable[[Animator], Callable[[int], object]]] = {
+    "full update at Speed 1.5": lambda animator: everything(animator, 1.5),
+    "full update, standing": lambda animator: everything(animator, 0.0),
+    "with reach and gesture": lambda animator: with_hands(animator, 0.0),
+    "speaking": speaking,
+}
+"""What is played by two checkouts in turns."""
+
+BLOCK, BLOCKS = 30, 50
+"""Frames that are played at a time, and how often."""
+
+
+def serve() -> None:
+    """Play a block of frames for each line with the name of a work, and print its CPU time [s]."""
+    human = Character.load("human")
+    works = {name: (make(Animator(human)), [0]) for name, make in COMPARED.items()}
+    for line in sys.stdin:
+        work, played = works[line.strip()]
+        start = time.process_time()
+        for number in range(played[0], played[0] + BLOCK):
+            work(number)
+        played[0] += BLOCK
+        sys.stdout.write(f"{time.process_time() - start}\n")
+        sys.stdout.flush()
+
+
+START = """
+import importlib.util, runpy, sys
+folder, bench = sys.argv[1:]
+spec = importlib.util.spec_from_file_location(
+    "cubeling", f"{folder}/cubeling/__init__.py",
+    submodule_search_locations=[f"{folder}/cubeling", folder],
+)
+sys.modules["cubeling"] = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(sys.modules["cubeling"])
+sys.argv = [bench, "--serve"]
+runpy.run_path(bench, run_name="__main__")
+"""
+"""Runs this file with the rooms of another checkout, which the installed ones would hide."""
+
+
+def _server(folder: Path) -> "subprocess.Popen[str]":
+    """Return a process that plays the rooms of a checkout; see `serve`."""
+    return subprocess.Popen(
+        [sys.executable, "-c", START, str(folder), __file__],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def compare(other: Path) -> int:
+    """Print how long updates take here and in another checkout, and return an exit code."""
+    table = Table("CPU time of one update", "there (ms)", "here (ms)", "ratio, limit 1.0")
+    servers = [_server(folder) for folder in (other.resolve(), Path(__file__).parents[2])]
+    worst = 0.0
+    for name in COMPARED:
+        times: list[list[float]] = []
+        for _ in range(BLOCKS + 1):
+            times.append([])
+            for server in servers:
+                assert server.stdin is not None
+                assert server.stdout is not None
+                server.stdin.write(f"{name}\n")
+                server.stdin.flush()
+                times[-1].append(float(server.stdout.readline()))
+        # The first block plans and loads; what else runs on the machine only makes blocks longer.
+        there, here = (1e3 / BLOCK * np.quantile(times[1:], 0.1, axis=0)).tolist()
+        ratio = here / there
+        worst = max(worst, ratio)
+        table.add_row(name, f"{there:.3f}", f"{here:.3f}", f"{ratio:.2f}")
+    for server in servers:
+        server.terminate()
+        server.wait()
+    Console().print(table)
+    return int(worst > 1.0)
+
+
 def acting(animator: Animator, action: str) -> Callable[[int], object]:
     """Return the work of an action with changing intensity."""
 
@@ -144,6 +256,15 @@ def switching(animator: Animator) -> Callable[[int], object]:
 
 def main() -> int:
     """Print the table and return an exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--against", type=Path, help="another checkout, to compare with")
+    parser.add_argument("--serve", action="store_true", help=argparse.SUPPRESS)
+    asked = parser.parse_args()
+    if asked.serve:
+        serve()
+        return 0
+    if asked.against is not None:
+        return compare(asked.against)
     human, vleo = Character.load("human"), Character.load("vleo")
     rest = human.skeleton.rest
     rows = {

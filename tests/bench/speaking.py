@@ -1,6 +1,9 @@
-"""Measure how soon a character speaks, how far a live mouth is behind, and how fast it renders.
+"""Measure how a character speaks: how soon, with how much of its body, and how well that fits.
 
-    python -m tests.bench.speaking [--minutes 2]
+    python -m tests.bench.speaking [--minutes 2] [--only sound|body|alignment]
+
+The first sound, how far a live mouth is behind, and how fast a video renders; what the body does,
+frozen and alive; and whether hands fit their own speech better than others (`speaking_body`).
 
 Sound and text are those of eSpeak NG, so they are ours; latencies of loudspeaker and microphone are
 the device's own and not in it.
@@ -26,6 +29,7 @@ from cubeling.characters.face.visemes.mouth_morphs import MouthMorphs
 from cubeling.characters.retargeting.root import with_root_joint
 from cubeling.characters.speech.audio import resample
 from cubeling.characters.speech.voices import Manner, Voice, espeak
+from tests.bench.speaking_body import alignment, body
 
 CONSOLE = Console(highlight=False, soft_wrap=True)
 FRAME_S = 1 / 30
@@ -117,12 +121,18 @@ def main() -> None:
     """Print all of it."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--minutes", type=float, default=2.0, help="length of the long text")
-    minutes = parser.parse_args().minutes
+    parser.add_argument("--only", choices=("sound", "body", "alignment"), help="one part of it")
+    asked = parser.parse_args()
     human = with_root_joint(Character.load("human"))
     with espeak() as voice:
-        first_sound(voice)
-        live_mouth(human, voice)
-        rendering(human, voice, minutes)
+        if asked.only in (None, "sound"):
+            first_sound(voice)
+            live_mouth(human, voice)
+            rendering(human, voice, asked.minutes)
+        if asked.only in (None, "body"):
+            body(voice, CONSOLE)
+    if asked.only in (None, "alignment"):
+        alignment(human, CONSOLE)
 
 
 if __name__ == "__main__":

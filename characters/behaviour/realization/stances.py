@@ -4,6 +4,7 @@ Trunk, neck and head turn, the pelvis comes down, and hips and knees bend so tha
 its place. The angles are ours.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,18 +12,21 @@ import numpy as np
 
 from cubeling.characters.behaviour.intents import PostureIntent
 from cubeling.characters.behaviour.realization.planned_values import presence
-from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
-from cubeling.characters.ik.legs import LegIK, find_legs, find_paws
+from cubeling.characters.body.axes import Degrees, body_axes
+from cubeling.characters.ik.legs import LegFrames, LegIK, find_legs, find_paws
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
     Quaternion,
+    Vector,
+    add,
     conjugate,
     from_rotation_vector,
     multiply,
     rotate,
+    subtract,
 )
 
 GROUPS = (
@@ -95,6 +99,12 @@ STANCES = {
 }
 """The stances by name; any other name, as STANDING, is how the body stands by itself."""
 
+ON_HIPS, ON_TRUNK = 6, 9
+"""Number of the values that legs follow: all hang on the pelvis, or forelegs on the trunk."""
+
+MAX_EXTENSION = 0.985
+"""Share of its length up to which a leg is stretched to its foot; then the pelvis comes down."""
+
 _QUADRUPED = {
     "SITTING": Stance(0.52, -0.12, hips=(-24.0, 0.0, 0.0), head=(14.0, 0.0, 0.0)),
     "CROUCHING": Stance(0.34, head=(-8.0, 0.0, 0.0)),
@@ -126,14 +136,18 @@ class StanceJoints:
         if self._legs is not None:
             parts["hips"] = int(self._legs.indices[self._legs.joints[0, 0]])
         self._joints = np.array([*parts.values()], np.intp)
-        self._axes = body_axes(skeleton, self._joints)
         self._order = skeleton.with_ancestors(self._joints.tolist())
         self._parents = skeleton.parents
         self._shares = np.zeros((len(parts), len(GROUPS)))
         for column, names in enumerate(GROUPS):
             rows = [row for row, part in enumerate(parts) if part in names]
             self._shares[rows, column] = 1.0 if column == 3 else 1.0 / max(len(rows), 1)
-        self._legs_follow = 9 if anatomy.kind == "quadruped" else 6  # forelegs hang on the trunk
+        axes = body_axes(skeleton, self._joints)
+        # From turns of the parts [degrees] to rotation vectors in the joints' frames, one below
+        # the other.
+        vectors = np.radians(axes[:, :, None] * self._shares[:, None, :, None])
+        self._vectors = vectors.reshape(3 * len(parts), 3 * len(GROUPS))
+        self._legs_follow = ON_TRUNK if anatomy.kind == "quadruped" else ON_HIPS
         self._leg_length = 0.0 if self._legs is None else _leg_length(self._legs)
 
     @property
@@ -159,6 +173,11 @@ class StanceJoints:
         stance = self._stances.get(name, Stance())
         if self._legs is None:
             stance = Stance(trunk=stance.trunk, head=stance.head, arms=stance.arms)
+        return self.values_of(stance)
+
+    @staticmethod
+    def values_of(stance: Stance) -> Array:
+        """Return the values of a stance, (15,)."""
         shift = (stance.aside, -stance.down, -stance.back)
         arms = (-stance.arms, 0.0, 0.0)
         return np.array([*shift, *stance.hips, *stance.trunk, *stance.head, *arms])
@@ -168,10 +187,7 @@ class StanceJoints:
 
         Pelvis and trunk turn besides to the left, about the vertical [rad].
         """
-        degrees = self._shares @ values[3:].reshape(-1, 3)
-        turns = rotations.from_rotation_vector(
-            rotation_vectors(self._axes, [tuple(row) for row in degrees.tolist()])
-        )
+        turns = rotations.from_rotation_vector((self._vectors @ values[3:]).reshape(-1, 3))
         local = pose.rotations.copy()
         local[self._joints] = rotations.multiply(local[self._joints], turns)
         if hips or trunk:
@@ -201,11 +217,15 @@ class StanceJoints:
         assert legs is not None
         before = legs.frames(pose)
         pelvis = int(legs.joints[0, 0])
-        parent = legs.skeleton.parents[pelvis]
+        parent, number = legs.skeleton.parents[pelvis], legs.indices[pelvis]
+        above = before.rotations[parent] if parent >= 0 else IDENTITY
         x, y, z = shift.tolist()
-        own = rotate(conjugate(before.rotations[parent]), (x, y, z)) if parent >= 0 else (x, y, z)
+        if self._legs_follow == ON_HIPS:
+            after_pelvis = multiply(above, turned.rotations[number].tolist())
+            turn = multiply(after_pelvis, conjugate(before.rotations[pelvis]))
+            y -= self._needed_drop(before, turn, (x, y, z))
         moved = turned.translations.copy()
-        moved[legs.indices[pelvis]] += own
+        moved[number] += rotate(conjugate(above), (x, y, z))
         turned = Pose(moved, turned.rotations, turned.scales, turned.morphs)
         after = legs.frames(turned)
         ankles = legs.joints[:, 3].tolist()
@@ -213,6 +233,21 @@ class StanceJoints:
             multiply(before.rotations[ankle], conjugate(after.rotations[ankle])) for ankle in ankles
         ]
         return legs.bend(turned, after, [before.positions[ankle] for ankle in ankles], feet)
+
+    def _needed_drop(self, before: LegFrames, turn: Quaternion, shift: Vector) -> float:
+        """Return how far a turned and shifted pelvis is to come down so that legs reach feet [m].
+
+        A leg that was straighter before may stay so.
+        """
+        legs, needed = self._legs, 0.0
+        assert legs is not None
+        for pelvis, hip, _, ankle, _ in legs.joints.tolist():
+            centre, old, foot = (before.positions[joint] for joint in (pelvis, hip, ankle))
+            x, y, z = add(add(centre, rotate(turn, subtract(old, centre))), shift)
+            most = max(MAX_EXTENSION * self._leg_length, math.dist(old, foot))
+            squared = most * most - (x - foot[0]) ** 2 - (z - foot[2]) ** 2
+            needed = max(needed, y - foot[1] - math.sqrt(max(squared, 0.0)))
+        return needed
 
 
 def _leg_length(legs: LegIK) -> float:

@@ -8,6 +8,7 @@ from cubeling.characters.control.command import CharacterCommand, LocomotionInte
 from cubeling.characters.control.controllers.actions import WEIGHT_LAG_S, Actions, next_action
 from cubeling.characters.control.controllers.controller import ControllerFrame
 from cubeling.characters.control.controllers.feet_in_transition import FeetInTransition
+from cubeling.characters.control.speaking.shifting import CommandedStanding
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.curves import ease
 from cubeling.characters.motion.motion import Motion, RootDelta
@@ -52,8 +53,8 @@ class InPlaceController:
         self._place = place or RootDelta()
         self._height = self._weight = 0.0
         self._actions = Actions(character)
-        self._standing = character.stand()
-        idle = self._standing or _idle(character)
+        self._standing = CommandedStanding(character)
+        idle = self._standing.motion or _idle(character)
         self._machine = StateMachine({"idle": idle}, "idle", others=self._actions)
         self._feet = FeetInTransition(character)
         self._state = "idle"
@@ -72,8 +73,7 @@ class InPlaceController:
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:
         """Advance by a time [s] under a command and return what is played."""
-        if self._standing is not None:
-            self._standing.feel(command.emotion)
+        self._standing.update(command)
         playing = elapsed * tempo if self._state == "idle" else elapsed
         now, self._time = self._time, self._time + playing
         self._act(command, elapsed, now)

@@ -10,6 +10,7 @@ from cubeling.characters.control.controllers.actions import (
     next_action,
 )
 from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.control.speaking.shifting import CommandedStanding
 from cubeling.characters.locomotion.gaits import (
     IDLE_SPEED,
     MAX_ANGULAR_RAD,
@@ -48,8 +49,8 @@ class WalkController:
 
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         clips = character.clips
-        self._standing = character.stand()
-        idle: Motion = self._standing or clips.get("idle", clips["Walk"])
+        self._standing = CommandedStanding(character)
+        idle: Motion = self._standing.motion or clips.get("idle", clips["Walk"])
         self.gaits = character.gaits
         self.place = place or RootDelta()
         """Where it stands on the table [m] and faces [rad]."""
@@ -88,9 +89,8 @@ class WalkController:
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:
         """Advance by a time [s] under a command and return what is played."""
-        if self._standing is not None:
-            # Also while it walks: when it stops it stands as it feels now.
-            self._standing.feel(command.emotion)
+        # Also while it walks: when it stops it stands as it feels now.
+        self._standing.update(command)
         action, self._finished = next_action(
             self._machine, self._actions, command.action, self._finished, self._time
         )

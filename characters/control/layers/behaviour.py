@@ -35,7 +35,10 @@ NEGLIGIBLE_RAD = 1e-4
 
 
 class StanceLayer:
-    """Sits, crouches, leans and turns the trunk to what is looked at; the feet stay."""
+    """Sits, crouches, leans, turns the trunk to what is looked at, and joins in what is said.
+
+    The feet stay.
+    """
 
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._joints = StanceJoints(character.skeleton, character.anatomy)
@@ -54,10 +57,13 @@ class StanceLayer:
             now,
         )
         turns = self._turn_to_gaze(context)
+        share, spoken = posture_share(context), context.speaking.stance
+        values = values * share
+        if spoken is not None:
+            values += spoken * self._share
         if not self._joints.able or not (values.any() or self._turning):
             return pose
-        share = posture_share(context)
-        return self._joints.apply(pose, values * share, turns[0] * share, turns[1] * share)
+        return self._joints.apply(pose, values, turns[0] * share, turns[1] * share)
 
     def _turn_to_gaze(self, context: FrameContext) -> tuple[float, float]:
         """Return how far pelvis and trunk turn to what is looked at [rad], to the left."""

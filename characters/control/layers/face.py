@@ -10,6 +10,7 @@ from cubeling.characters.face.blink import BlinkTimer
 from cubeling.characters.face.jaw import JawJoint
 from cubeling.characters.face.lids import Lids, blink_shares
 from cubeling.characters.face.speech_display import SpeechDisplay
+from cubeling.characters.face.word_emotion import face_of
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.pose import Pose
 
@@ -33,12 +34,18 @@ class FaceLayer:
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with lids and expression."""
         frame = context.frame
-        emotion, acted = context.emotion, frame.state if frame.shows_emotion else ""
+        speaking = context.speaking
+        emotion = face_of(context.emotion, speaking.emotion)
+        acted = frame.state if frame.shows_emotion else ""
         if acted and not _is_finer(emotion, acted):
             emotion, acted = None, ""
         self._display.update(context.elapsed, emotion, acted)
         closed = self._blinks.update(
-            context.elapsed, context.gaze_shift, context.expressivity.tempo
+            context.elapsed,
+            context.gaze_shift,
+            context.expressivity.tempo,
+            talking=speaking.talking,
+            phrase_ends=speaking.phrase_ends,
         )
         self._update_speech(context)
         if not self._lids and not self._display.active and not self._speech.active:
@@ -70,7 +77,11 @@ class FaceLayer:
         profile = speech.profile
         self._speech.visemes = profile.visemes
         self._speech.update(
-            context.elapsed, speech.utterance, speech.start, now, profile.face_emphasis
+            context.elapsed,
+            speech.utterance,
+            speech.start,
+            now,
+            profile.face_emphasis + speech.emphasis,
         )
 
 

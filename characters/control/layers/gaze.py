@@ -1,7 +1,5 @@
 """Gaze: head and eyes that follow a point, and movements of the head besides."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from cubeling.characters.behaviour.realization.head_movements import turned_head
@@ -34,6 +32,7 @@ class GazeLayer:
         if looked is not None:
             target, tempo = context.in_character(looked.target), HEAD_LAG_S / lag_of(looked)
             share *= float(looked.influence != "EYES")
+        speaking = context.speaking
         pose = self._gaze.update(
             pose,
             target,
@@ -41,9 +40,10 @@ class GazeLayer:
             share,
             tempo=tempo,
             head_drop=context.expressivity.head_drop * posture_share(context),
-            head_turn=self._head_turn(context),
+            head_turn=self._head_turn(context) + speaking.nod,
+            averted=None if looked is not None else speaking.aversion,
         )
-        return Found(pose, replace(context, gaze_shift=self._gaze.shift))
+        return Found(pose, context.found(gaze_shift=self._gaze.shift))
 
     def _head_turn(self, context: FrameContext) -> Array:
         """Return how the head moves besides: a rotation vector about the body's axes, (3,)."""

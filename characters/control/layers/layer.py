@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from cubeling.affect import Emotion
 from cubeling.characters.body.posture import Expressivity
 from cubeling.characters.control.command import CharacterCommand
 from cubeling.characters.control.controllers.controller import ControllerFrame
+from cubeling.characters.control.speaking.state import NOT_SPEAKING, SpeakingState
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.pose import Array, Pose
 
@@ -44,6 +45,18 @@ class FrameContext:
 
     breath: float = 0.0
     """Filling of the lungs, as the posture layer found it, 0…1."""
+
+    speaking: SpeakingState = NOT_SPEAKING
+    """What is done with a speech besides gestures, as the speech layer found it."""
+
+    def found(self, **values: Any) -> "FrameContext":
+        """Return the same with what a layer has found: other values of some fields.
+
+        `dataclasses.replace` would read every field by its name, which takes as long as a layer.
+        """
+        context = object.__new__(FrameContext)
+        context.__dict__.update(self.__dict__, **values)
+        return context
 
     @property
     def emotion(self) -> Emotion | None:

@@ -1,7 +1,5 @@
 """Posture, breath and sway of the body."""
 
-from dataclasses import replace
-
 from cubeling.characters.body.posture import NEUTRAL_EXPRESSIVITY, Posture
 from cubeling.characters.body.sway import BodySway
 from cubeling.characters.control.layers.layer import Found, FrameContext
@@ -37,4 +35,4 @@ class PostureLayer:
         local = pose.rotations.copy()
         local[joints] = rotations.multiply(local[joints], turns)
         moved = Pose(pose.translations, local, pose.scales, pose.morphs)
-        return Found(moved, replace(context, breath=self._sway.breath))
+        return Found(moved, context.found(breath=self._sway.breath))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.characters.motion.curves import Keyed
 from cubeling.characters.motion.motion import RootDelta
@@ -49,7 +50,7 @@ class PlayedSegment:
         low = int(frame)
         before = self.turns[low]
         mixed: Array = before + (self.turns[low + 1] - before) * (frame - low)
-        mixed /= np.sqrt(np.einsum("ji,ji->j", mixed, mixed))[:, None]
+        mixed /= np.sqrt(np.vecdot(mixed, mixed))[:, None]
         return mixed
 
 
@@ -134,7 +135,7 @@ class PlannedGestureMotion:
         """Return the pose at a time [s]."""
         rest = self.library.skeleton.rest
         turns = rest.rotations.copy()
-        turns[self._joints] = self.turns(time)
+        turns[self.joints] = self.turns(time)
         return Pose(rest.translations, turns)
 
     def travel(self, start: float, end: float) -> RootDelta:
@@ -146,8 +147,9 @@ class PlannedGestureMotion:
         return [segment.start for segment in self.segments]
 
     @cached_property
-    def _joints(self) -> list[int]:
-        return [*self.library.joints]
+    def joints(self) -> NDArray[np.intp]:
+        """Numbers of the joints that it moves, (joints,)."""
+        return np.array(self.library.joints, np.intp)
 
 
 @dataclass(frozen=True)

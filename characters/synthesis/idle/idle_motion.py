@@ -69,6 +69,7 @@ class IdleMotion:
         self._made = 0  # number of frames that have been made
         self._entered = 0  # of them, before time 0
         self._asked = 0.0  # for which time, the last one [s]
+        self._talking = False  # shifts are those of a speech
         self._lively = 1.0  # how much of the small variations shows
         self._calming = 0  # for how many frames they fade out at the end of a way; 0: not leading
 
@@ -117,6 +118,12 @@ class IdleMotion:
     def shift_now(self) -> None:
         """Shift the balance as soon as the present shift, if any, has ended."""
         self._rested = math.inf
+
+    def talk(self, shift: bool | None) -> None:
+        """Shift when a speech asks for it, or not until then; None in silence."""
+        self._talking = shift is not None
+        if shift:
+            self.shift_now()
 
     def begin_at(self, posture: Array) -> None:
         """Stand in a posture, (size,), from the next frame on, and go on from there."""
@@ -184,7 +191,8 @@ class IdleMotion:
             return self._shift.popleft()
         if self._calming:
             return self._posture.vector
-        if self._rested < self.pause(self._posture, self._chance):
+        waits = self._talking and self._rested < math.inf
+        if waits or self._rested < self.pause(self._posture, self._chance):
             self._rested += 1.0 / self.database.rate
             return self._posture.vector
         following = self._following(self._posture)

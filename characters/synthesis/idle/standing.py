@@ -25,6 +25,9 @@ from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
 PAUSE_S = 10.0, 24.0
 """Shortest and longest time between acts [s]."""
 
+NEUTRAL_REGION = region_of("neutral")
+"""Emotions that leave room for acts."""
+
 TRANSITION_S = 0.7
 """How long it goes over into an act and back [s]."""
 
@@ -55,8 +58,8 @@ class PlantedPaws:
 class StandingPerson:
     """Idle motion with acts; a `StandingMotion`, to be sampled in the order of time.
 
-    Acts are played while the emotion is neutral. One who begins to feel breaks them off. Paws may
-    be planted here; feet are by a layer of the animator.
+    Acts are played while the emotion is neutral. One who begins to feel, or to speak, breaks them
+    off. Paws may be planted here; feet are by a layer of the animator.
     """
 
     def __init__(
@@ -72,7 +75,7 @@ class StandingPerson:
         self._acts = {clip.name: clip for clip in acts}
         self._machine = StateMachine({"": idle, **self._acts}, "", TRANSITION_S)
         self._rng = np.random.default_rng([seed, 1])
-        self._neutral = True
+        self._neutral, self._talking = True, False
         self._next = ""  # the act that it goes to
         self._clock = self._last = 0.0  # played, and asked for last [s]
         self._change = self._rng.uniform(*PAUSE_S)  # when something else begins [s]
@@ -86,27 +89,37 @@ class StandingPerson:
         """Show an emotion from now on, or none."""
         emotion = emotion or NEUTRAL
         self.idle.feel(emotion)
-        self._neutral = region_of("neutral").contains(emotion)
+        self._neutral = NEUTRAL_REGION.contains(emotion)
+
+    def talk(self, shift: bool | None) -> None:
+        """Shift the weight when a speech asks for it, or not until then; None in silence."""
+        self.idle.talk(shift)
+        self._talking = shift is not None
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]; one long before the latest goes on from where it is."""
         self._clock += max(time - self._last, 0.0)
         self._last = time
         occupied = self._next != "" or self._machine.state != ""
-        if self._clock >= self._change or (occupied and not self._neutral):
+        if self._clock >= self._change or (occupied and not self._free):
             self._go_on()
         pose = self._machine.sample(self._clock)
         return pose if self._paws is None else self._paws.hold(pose)
 
+    @property
+    def _free(self) -> bool:
+        """Whether it may play acts."""
+        return self._neutral and not self._talking
+
     def _go_on(self) -> None:
-        """Go to an act, then play it, then stand; one who feels only stands."""
+        """Go to an act, then play it, then stand; who feels or speaks only stands."""
         ended, ready = self._machine.state, self._next
         self._next = ""
         lasts = self._rng.uniform(*PAUSE_S)
         if ended:
             self._machine.request("", self._clock)
-            self.idle.begin_at(self._vectors(self._acts[ended], -1 if self._neutral else 0))
-        elif not self._neutral:
+            self.idle.begin_at(self._vectors(self._acts[ended], -1 if self._free else 0))
+        elif not self._free:
             self.idle.go_on()
         elif ready:
             self._machine.request(ready, self._clock)

@@ -1,5 +1,6 @@
 """Sessions that older versions of the program recorded are read, played and replayed."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -75,7 +76,10 @@ def test_an_older_session_is_played_from_what_it_recorded(name, start):
 
 @pytest.mark.slow(reason="two seconds are tracked")
 def test_an_older_session_whose_character_speaks_is_replayed():
-    """Bit for bit where processors round alike: its pictures are those that its program saw."""
+    """Bit for bit where processors round alike: its pictures are those that its program saw.
+
+    But for neck, head and eyes: eyes stay on what they look at while a head nods, since b3314e50.
+    """
     path = FOLDER / "spoken.mcap"
     lines, cleared, opened = (
         session_parts.lines(path),
@@ -100,4 +104,9 @@ def test_an_older_session_whose_character_speaks_is_replayed():
     for (topic, time, data), (_, _, message) in zip(
         messages(path, *MESSAGE_TYPES), made, strict=True
     ):
-        assert_close(topic, time, decode(MESSAGE_TYPES[topic], data), message)
+        recorded = decode(MESSAGE_TYPES[topic], data)
+        if topic == "/character/pose":
+            joints = playground.character.skeleton.names
+            nods = [n for n, name in enumerate(joints) if re.search("neck|head|Eye", name)]
+            recorded.pose.rotations[nods] = message.pose.rotations[nods]
+        assert_close(topic, time, recorded, message)

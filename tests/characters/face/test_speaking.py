@@ -11,6 +11,7 @@ from cubeling.affect import Emotion
 from cubeling.characters.control.animator import Animator
 from cubeling.characters.control.command import ActionIntent, CharacterCommand, SpeechIntent
 from cubeling.characters.control.layers.face import FaceLayer
+from cubeling.characters.control.speaking.state import NOT_SPEAKING
 from cubeling.characters.face.speech_display import CLOSING_S
 from cubeling.characters.model.character import Character
 from cubeling.characters.speech.speech import Accent, Phone, Utterance
@@ -99,6 +100,7 @@ def test_a_face_that_never_speaks_or_feels_is_left_alone(speaker):
         context: Any = SimpleNamespace(
             frame=frame, elapsed=1 / RATE, command=command, emotion=None, gaze_shift=0.0,
             expressivity=SimpleNamespace(tempo=1.0),
+            speaking=NOT_SPEAKING,
         )  # fmt: skip
         assert layer.update(pose, context) is pose
 
