@@ -231,8 +231,8 @@ class GesturePlanning:
         for side, keys in self.keys.items():
             for number, time in enumerate(self._times):
                 contact = touches(keys, time)
-                sides = self.keys if contact == OTHER_HAND else [side]
-                for each in sides if contact else ():
+                sides = list(self.keys) if contact == OTHER_HAND else [side]
+                for each in sides if contact else []:
                     stops[number] |= np.isin(joints, body.arms[each])
         return stops
 
