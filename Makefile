@@ -132,6 +132,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.cast
 	-$(BIN)/python -m tests.bench.strangers ../shared/data
 	$(BIN)/python -m tests.bench.symbolic_gestures
+	$(BIN)/python -m tests.bench.expressivity
 	$(BIN)/python -m tests.bench.bml
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.wrinkles

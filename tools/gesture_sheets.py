@@ -100,7 +100,7 @@ def _pictures(
     return [
         renderer.portrait(
             character,
-            motion.over(performer.posture, moment, 1.0),
+            motion.sample(motion.times.in_stroke(moment) - motion.times.start),
             azimuth=AZIMUTH_RAD,
             focus=focus,
         )

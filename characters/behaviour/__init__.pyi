@@ -44,6 +44,7 @@ from cubeling.characters.behaviour.gestures.planning import GestureRealizer as G
 from cubeling.characters.behaviour.gestures.recording import (
     gesture_from_recording as gesture_from_recording,
 )
+from cubeling.characters.behaviour.gestures.style.effect import without_effect as without_effect
 from cubeling.characters.behaviour.gestures.timing import (
     Repeats as Repeats,
     apex_share as apex_share,

@@ -1,12 +1,13 @@
 """What symbolic gestures cost: `python -m tests.bench.symbolic_gestures`.
 
 planning
-    Time to plan a gesture when it first appears: median and longest of all bundled ones.
+    Time to plan all key postures of a gesture when it first appears: median and longest of all
+    bundled ones; it is spread over frames.
 a frame
     Least time to lay a gesture over a pose, half faded in; and ÷ that of `np.copy` of the pose,
     which is the same on a busy machine.
 largest step
-    Largest turn of a joint from one key posture to the next, of all gestures: no joint flips.
+    Largest turn of a joint in a frame at 30 Hz, of all gestures: no joint flips.
 sweep, torso, speed
     Largest extent of the palm's way, largest turn of the chest, and peak speed of the palm in
     BEAT_BOTH: wide and powerful ÷ as it is written.
@@ -30,6 +31,7 @@ from cubeling.characters.behaviour.gestures.planning import FLIP_RAD, GestureRea
 from cubeling.characters.skeleton import rotations
 
 MAX_FRAME_MS = 1.0
+RATE_HZ = 30.0
 STRONG = GestureExpressivity(spatial=0.3, power=1.0)
 
 
@@ -39,7 +41,8 @@ def planning_ms(character: Character) -> list[float]:
     spans = []
     for gesture in GestureCollection.load_bundled():
         start = time.perf_counter()
-        performer.plan(gesture)
+        planning = performer.planning(gesture)
+        planning.advance(len(planning.numbers))
         spans.append(1e3 * (time.perf_counter() - start))
     return spans
 
@@ -50,19 +53,21 @@ def frame_ms(performer: GestureRealizer) -> tuple[float, float]:
         performer.plan(GestureCollection.load_bundled().get("OPEN_ARMS")),
         performer.posture,
     )
-    frame = min(timeit.repeat(lambda: motion.over(pose, 0.37, 0.5), number=100, repeat=30)) / 100
+    now = motion.times.in_stroke(0.37)
+    frame = min(timeit.repeat(lambda: motion.over(pose, now, 0.5), number=100, repeat=30)) / 100
     copied = min(timeit.repeat(pose.rotations.copy, number=100, repeat=30)) / 100
     return 1e3 * frame, frame / copied
 
 
 def largest_step(performer: GestureRealizer) -> float:
-    """Return the largest turn of a joint between two key postures [rad]."""
+    """Return the largest turn of a joint in a frame [rad]."""
     largest = 0.0
     for gesture in GestureCollection.load_bundled():
-        turns = performer.plan(gesture).arm_turns
-        if turns.size:
-            cosines = np.abs(np.vecdot(turns[1:], turns[:-1]))
-            largest = max(largest, 2.0 * float(np.arccos(np.clip(cosines, 0.0, 1.0)).max()))
+        motion = performer.plan(gesture)
+        times = np.arange(0.0, motion.duration, 1.0 / RATE_HZ)
+        turns = np.array([motion.sample(float(each)).rotations for each in times])
+        cosines = np.abs(np.vecdot(turns[1:], turns[:-1]))
+        largest = max(largest, 2.0 * float(np.arccos(np.clip(cosines, 0.0, 1.0)).max()))
     return largest
 
 
@@ -71,7 +76,7 @@ def measured_way(
 ) -> tuple[float, float, float]:
     """Return sweep [m], turn of the chest [rad] and peak speed [m/s] of BEAT_BOTH."""
     motion = performer.plan(GestureCollection.load_bundled().get("BEAT_BOTH"), "right", style)
-    times = np.linspace(0.0, motion.duration, 201)
+    times = np.linspace(motion.times.stroke_start, motion.times.stroke_end, 201)
     poses = [motion.sample(float(each)) for each in times]
     palms = np.array([performer.body.palm(pose, "right") for pose in poses])
     skeleton, chest = performer.character.skeleton, performer.chest

@@ -104,6 +104,9 @@ def show(
 ) -> None:
     """Show the phases and keys of a gesture, and draw how characters perform it.
 
+    It names the parameters of expressivity that do nothing to this gesture: a wider space does not
+    move what a hand touches.
+
     Example: cubeling gesture show WAVE -o wave.png
     """
     if output is not None:
@@ -173,8 +176,9 @@ def _save(store: GestureStore, gesture: SymbolicGesture, overwrite: bool) -> str
 
 
 def describe(console: Console, gesture: SymbolicGesture) -> None:
-    """Print the phases and the keys of a gesture."""
+    """Print the phases and the keys of a gesture, and what of expressivity does nothing to it."""
     from cubeling.app.workshop.gesture_editor.editing.timing import phase_spans
+    from cubeling.characters.behaviour import without_effect
 
     console.print(f"[bold]{escape(gesture.name)}[/]  {escape(gesture.summary)}", highlight=False)
     spans = phase_spans(gesture).items()
@@ -185,6 +189,8 @@ def describe(console: Console, gesture: SymbolicGesture) -> None:
             console.print(_hand_table(row, keys))
     if gesture.body:
         console.print(_body_table(gesture.body))
+    if idle := without_effect(gesture):
+        console.print(f"no effect here: {', '.join(idle)}")
 
 
 def hands(gesture: SymbolicGesture) -> str:

@@ -11,17 +11,12 @@ import numpy as np
 from cubeling.characters.behaviour.symbolic_gesture import HandKey
 from cubeling.characters.skeleton.pose import Array
 
-SAMPLES_PER_TURN = 8
-"""Points of a circle, and of a wave to and fro."""
+POINTS_PER_TURN = 8
+"""Points of a circle: a spline through them is round to within a hundredth of its radius."""
 
-SAMPLES = 6
-"""Points of every other way from key to key."""
-
-SAMPLES_WITH_POWER = 10
-"""Points of a way that power makes uneven."""
-
-RAMP = 0.15
-"""Share of a circle or wave in which it gets its speed, and loses it."""
+MIN_LINE = 0.3
+"""Length of a line from which it has a point in its middle, in parts of an arm's length; arms swing
+through shorter ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,22 +62,18 @@ class PathFormula:
         return self.at(t) - self.at(np.zeros(1))
 
 
-def samples(key: HandKey, power: float) -> int:
-    """Return how many points the way to a key needs."""
-    plain = SAMPLES if power <= 0.0 else SAMPLES_WITH_POWER
-    if key.path in ("circle", "wave"):
-        return max(plain, math.ceil(SAMPLES_PER_TURN * key.turns))
-    return plain
+def path_points(key: HandKey, length: float) -> Array:
+    """Return the shares, 0…1 without both, of the way to a key at which it has points, (n,).
 
-
-def ramp(t: Array) -> Array:
-    """Return times 0…1 that start and stop gently, as a hand that goes round or to and fro does.
-
-    The speed rises and falls over `RAMP` of the time each.
+    A spline through them is the path; `length` is that from key to key, in parts of an arm's. A
+    wave has one at each turn.
     """
-    speed = 1.0 / (1.0 - RAMP)
-    rising = 0.5 * speed * t**2 / RAMP
-    falling = 1.0 - 0.5 * speed * (1.0 - t) ** 2 / RAMP
-    steady = speed * (t - RAMP / 2.0)
-    times: Array = np.where(t < RAMP, rising, np.where(t > 1.0 - RAMP, falling, steady))
-    return times
+    bows = any(key.radius)
+    if key.path == "wave" and bows:
+        half_periods = max(round(2.0 * key.turns), 1)
+        return (np.arange(half_periods) + 0.5) / half_periods
+    if key.path == "circle" and bows:
+        return np.linspace(0.0, 1.0, POINTS_PER_TURN * max(round(key.turns), 1) + 1)[1:-1]
+    straight = key.path != "keys" and not bows
+    halved = (key.path == "arc" and bows) or (straight and length > MIN_LINE)
+    return np.array([0.5] if halved else [])

@@ -1,6 +1,6 @@
 """When the phases of a gesture are, and how far it is at a time."""
 
-import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from cubeling.characters.behaviour.intents import StrokeTimes
@@ -13,8 +13,8 @@ RETURN_SHARE = 0.4
 MIN_PHASE_S = 1e-4
 """Phases that are shorter count as this long [s]."""
 
-PREPARED, STROKE_END, GONE = 1.0, 2.0, 3.0
-"""Phases, after 0.0, the start: the stroke lies between the first two; hands hold still there."""
+ASSUMED_HOLD_S = 1.0
+"""A hold whose end is not known is planned to last so long [s]; hands wait in its middle."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +47,13 @@ class Repeats:
         """Whether there is a way back."""
         return self.share < 1.0
 
-    def period_share(self, time: float) -> float:
-        """Return how much of its period is over at a time 0…1 of all of it.
+    def in_all(self, period: int, time: float) -> float:
+        """Return the time 0…1 of all of it at a time 0…1 of one period.
 
-        >>> Repeats(2, 1.0).period_share(0.75), Repeats(1, 1.0).period_share(1.0)
-        (0.5, 1.0)
+        >>> Repeats(2, 1.0).in_all(1, 0.5), Repeats(2, 0.6).in_all(1, 0.6)
+        (0.75, 1.0)
         """
-        elapsed = time * self.periods
-        return elapsed - min(math.floor(elapsed), self.count - 1)
+        return (period + time) / self.periods
 
 
 def apex_share(gesture: SymbolicGesture) -> float:
@@ -91,20 +90,55 @@ def natural_times(gesture: SymbolicGesture, start: float = 0.0) -> StrokeTimes:
     )
 
 
-def phase_at(times: StrokeTimes, now: float, apex: float, retraction: float) -> float:
-    """Return how far a gesture is at a time: 0 before it … 3 after it, 1…2 in its stroke.
+class PhaseTimes:
+    """The times of a gesture with all phases in order, each of at least the least length.
 
-    `apex` is the share of the stroke at `times.stroke`; `retraction` is how long it takes [s] if
-    its end is not known. A gesture whose `relax` is not known stays at the end of its stroke.
+    Times that are not known are planned: `apex` is the share of all strokes at `times.stroke`,
+    `retraction` how long it takes [s].
     """
-    knots = [times.start, times.ready, times.stroke_start, times.stroke, times.stroke_end]
-    phases = [0.0, PREPARED, PREPARED, PREPARED + apex, STROKE_END]
-    if times.relax is not None:
-        end = times.relax + retraction if times.end is None else times.end
-        knots += [times.relax, end]
-        phases += [STROKE_END, GONE]
+
+    def __init__(self, times: StrokeTimes, apex: float, retraction: float) -> None:
+        self._apex = apex
+        self.held = times.relax is None
+        """Whether it stays at the end of its stroke until more is known."""
+        relax, end = times.relax, times.end
+        if relax is None:
+            relax = times.stroke_end + ASSUMED_HOLD_S
+            end = None
+        asked = (times.start, times.ready, times.stroke_start, times.stroke, times.stroke_end)
+        ordered = _ascending((*asked, relax, relax + retraction if end is None else end))
+        self.knots = ordered
+        """Start, ready, stroke start, stroke, stroke end, relax and end [s], ascending."""
+        self.start, self.ready, self.stroke_start, self.stroke = ordered[:4]
+        self.stroke_end, self.relax, self.end = ordered[4:]
+
+    def in_stroke(self, share: float) -> float:
+        """Return when a share of all strokes is over [s]: the apex falls on `stroke`."""
+        if self._apex >= 1.0:
+            return interpolate(share, (0.0, 1.0), (self.stroke_start, self.stroke))
+        if self._apex <= 0.0:
+            return interpolate(share, (0.0, 1.0), (self.stroke, self.stroke_end))
+        knots = (self.stroke_start, self.stroke, self.stroke_end)
+        return interpolate(share, (0.0, self._apex, 1.0), knots)
+
+    def at(self, now: float, own: "PhaseTimes") -> float:
+        """Return the time of `own`, the times that it was planned for, at which it is as far.
+
+        >>> from dataclasses import replace
+        >>> times = natural_times(SymbolicGesture("NOW", preparation=0.5, stroke=1.0))
+        >>> planned = PhaseTimes(times, 1.0, 0.6)
+        >>> PhaseTimes(replace(times, ready=1.0, stroke_start=1.0), 1.0, 0.6).at(0.5, planned)
+        0.25
+        """
+        if self.held:
+            now = min(now, 0.5 * (self.stroke_end + self.relax))
+        return interpolate(now, self.knots, own.knots)
+
+
+def _ascending(times: Iterable[float]) -> list[float]:
+    """Return times in order: what is not known, has no length or is too early gets the least."""
     ascending: list[float] = []
-    for knot in knots:  # a phase of no length, or out of order, gets the least length
-        known = knot if knot == knot else ascending[-1]
+    for time in times:
+        known = time if time == time else ascending[-1]
         ascending.append(max(known, ascending[-1] + MIN_PHASE_S) if ascending else known)
-    return interpolate(now, ascending, phases)
+    return ascending

@@ -7,20 +7,16 @@ from typing import TypeVar
 
 import numpy as np
 
-from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.gathering import PartKeys
 from cubeling.characters.behaviour.gestures.place.directions import direction
 from cubeling.characters.behaviour.gestures.place.space import GestureSpace
-from cubeling.characters.behaviour.gestures.style.easing import ease_time
-from cubeling.characters.behaviour.gestures.style.splines import TcbSpline
-from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramp, samples
+from cubeling.characters.behaviour.gestures.targeting import PathFormula, path_points
 from cubeling.characters.behaviour.gestures.timing import Repeats
 from cubeling.characters.behaviour.intents import Hand
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey, HandKey, SymbolicGesture
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.skeleton.scalar_quaternions import cross
-from cubeling.characters.smoothing import smoothstep
 
 Key = TypeVar("Key", HandKey, BodyKey)
 
@@ -28,35 +24,16 @@ POSITION, ORIENTATION, SHAPES = slice(0, 3), slice(3, 7), slice(7, None)
 """Columns of a track: place [m], frame of the hand as a quaternion, weight of each shape."""
 
 
-@dataclass(frozen=True)
-class Overshoot:
-    """A hand that goes beyond a key, in rotations, and comes back."""
-
-    start: float
-    """Time of the key that it comes from."""
-
-    end: float
-    """Time of the key that it goes to."""
-
-    times: Array
-    """Times of the stroke at which it is sampled, ascending, (n,)."""
-
-    shares: Array
-    """By how much of the way from key to key, (n,)."""
-
-
 @dataclass(frozen=True, eq=False)
 class HandTrack:
     """A hand over the time of a stroke, 0…1."""
 
     keys: PartKeys
-    """Dense keys; places are from the middle of the chest, in its upright frame."""
+    """Its keys and points of its paths; places are from the middle of the chest, in its upright
+    frame."""
 
     shapes: tuple[str, ...]
     """Names of the shapes that the last columns are the weights of."""
-
-    overshoots: tuple[Overshoot, ...]
-    """Where power lets it overshoot."""
 
 
 def choose_side(gesture: SymbolicGesture, hand: Hand) -> tuple[SymbolicGesture, bool]:
@@ -76,12 +53,21 @@ def one_period(keys: tuple[Key, ...], repeats: Repeats) -> tuple[Key, ...]:
     return stroke + (replace(keys[0], at=1.0),)
 
 
+def track_times(keys: Sequence[HandKey], places: Sequence[Array], arm: float) -> Array:
+    """Return the times of keys and of the points of their paths, (n,); `arm` is its length [m]."""
+    times = [np.array([key.at for key in keys])]
+    for number, (before, key) in enumerate(pairwise(keys)):
+        length = float(np.linalg.norm(places[number + 1] - places[number])) / arm
+        times.append(before.at + (key.at - before.at) * path_points(key, length))
+    return np.unique(np.concatenate(times))
+
+
 def hand_track(
     keys: Sequence[HandKey],
     places: Sequence[Array],
+    times: Array,
     space: GestureSpace,
     left: bool,
-    expressivity: GestureExpressivity,
 ) -> HandTrack:
     """Return the way of a hand through its keys.
 
@@ -91,38 +77,40 @@ def hand_track(
         In the order of time.
     places
         Where each is from the middle of the chest, (3,) in its upright frame [m].
+    times
+        When, (n,) ascending, 0…1.
     space
         Scales the amplitudes of paths.
     """
     shapes = tuple(dict.fromkeys(key.shape for key in keys))
-    times = np.array([key.at for key in keys])
-    spline = TcbSpline.of(times, np.array(places), expressivity)
+    at = np.array([key.at for key in keys])
     frames = np.array([orientation(key, left) for key in keys])
     weights = np.array([[float(shape == key.shape) for shape in shapes] for key in keys])
-    parts = [np.concatenate([spline.points[:1], frames[:1], weights[:1]], axis=1)]
-    dense, overshoots = [times[:1]], []
-    for number, (before, key) in enumerate(pairwise(keys)):
-        u = np.linspace(0.0, 1.0, samples(key, expressivity.power) + 1)[1:]
-        way = ease_time(u, expressivity)
-        beyond, reached = np.maximum(way - 1.0, 0.0), np.clip(way, 0.0, 1.0)
-        line = spline if key.path == "keys" else spline.straighten(number)
-        formula = PathFormula.of(key, space.radius(key.radius, left))
-        round_trip = key.path in ("circle", "wave")
-        way_there = line.segment(number, reached)
-        way_there += formula.offsets(ramp(reached) if round_trip else reached)
-        share = smoothstep(reached)
-        turned = rotations.slerp(frames[number], frames[number + 1], share)
-        shaped = weights[number] + (weights[number + 1] - weights[number]) * share[:, None]
-        parts.append(np.concatenate([way_there, turned, shaped], axis=1))
-        at = before.at + (key.at - before.at) * u
-        at[-1] = key.at
-        dense.append(at)
-        if beyond.any() and not key.place.contact:
-            over = beyond > 0.0
-            overshoots.append(Overshoot(before.at, key.at, at[over], beyond[over]))
-    rows = np.concatenate(parts)
-    rows[:, ORIENTATION] = rotations.continuous(rows[:, ORIENTATION])
-    return HandTrack(PartKeys(np.concatenate(dense), rows), shapes, tuple(overshoots))
+    rows = []
+    for time in times:
+        after = min(int(np.searchsorted(at, time)), len(keys) - 1)
+        before = max(after - 1, 0) if time < at[after] else after
+        low, high = at[before], at[after]
+        share = (time - low) / (high - low) if high > low else 0.0
+        place = places[before] + (places[after] - places[before]) * share
+        if share > 0.0:
+            formula = PathFormula.of(keys[after], space.radius(keys[after].radius, left))
+            place = place + formula.offsets(np.array([share]))[0]
+        turned = rotations.slerp(frames[before], frames[after], share)
+        shaped = weights[before] + (weights[after] - weights[before]) * share
+        rows.append(np.concatenate([place, turned, shaped]))
+    track = np.array(rows)
+    track[:, ORIENTATION] = rotations.continuous(track[:, ORIENTATION])
+    return HandTrack(PartKeys(times, track), shapes)
+
+
+def touches(keys: Sequence[HandKey], time: float) -> str:
+    """Return what a hand touches at a time: "" between keys, and where a key touches nothing."""
+    if time <= keys[0].at:
+        return keys[0].place.contact
+    if time >= keys[-1].at:
+        return keys[-1].place.contact
+    return next((key.place.contact for key in keys if key.at == time), "")
 
 
 def orientation(key: HandKey, left: bool) -> Array:

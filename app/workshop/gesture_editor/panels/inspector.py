@@ -5,7 +5,7 @@ from typing import Any, Literal
 from imgui_bundle import imgui
 
 from cubeling.app.workshop.gesture_editor.editing import actions
-from cubeling.app.workshop.gesture_editor.editing.document import GestureDocument
+from cubeling.app.workshop.gesture_editor.editing.document import GestureDocument, moves
 from cubeling.app.workshop.gesture_editor.editing.edits import (
     change_direction,
     change_expressivity,
@@ -24,7 +24,13 @@ from cubeling.app.workshop.gesture_editor.editing.words import (
 )
 from cubeling.app.workshop.gesture_editor.panels.space_map import space_map
 from cubeling.app.workshop.gesture_editor.panels.ui import LARGE, SMALL, SUBTLE, Ui
-from cubeling.characters.behaviour import CONTACTS, NEUTRAL, SECTORS_Z, HandKey
+from cubeling.characters.behaviour import (
+    CONTACTS,
+    NEUTRAL,
+    SECTORS_Z,
+    HandKey,
+    without_effect,
+)
 from cubeling.characters.motion import HAND_SHAPES
 
 WIDTH, COLUMN, GUTTER = 456.0, 220.0, 16.0
@@ -220,6 +226,10 @@ def _gesture(ui: Ui) -> None:
         moved = ui.slider(name, label, value, (low, 1.0), COLUMN)
         if moved is not None:
             ui.edit(change_expressivity(ui.state.document, name, moved))
+    idle = without_effect(gesture)
+    if idle and moves(gesture):
+        words = ", ".join(label for name, label, _ in PARAMETERS if name in idle)
+        ui.label(f"No effect here: {words}", SUBTLE, SMALL)
     ui.space(8.0)
     _side_label(ui, "Hands")
     imgui.begin_group()

@@ -7,6 +7,10 @@ import numpy as np
 from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
 from cubeling.characters.skeleton.pose import Array
 
+MOST_WEIGHT = 1.0
+"""Weight of a difference in a tangent, at most: that of one parameter at its end. Together they
+would have up to 4, and a hand would leave the space about the body."""
+
 
 @dataclass(frozen=True, eq=False)
 class TcbSpline:
@@ -16,13 +20,13 @@ class TcbSpline:
     """Ascending, (keys,)."""
 
     points: Array
-    """(keys, n)."""
+    """(keys, …)."""
 
     incoming: Array
-    """Derivative by time just before each key, (keys, n)."""
+    """Derivative by time just before each key, (keys, …)."""
 
     outgoing: Array
-    """Derivative by time just after each key, (keys, n)."""
+    """Derivative by time just after each key, (keys, …)."""
 
     @staticmethod
     def of(times: Array, points: Array, style: GestureExpressivity = NEUTRAL) -> "TcbSpline":
@@ -33,35 +37,14 @@ class TcbSpline:
         """
         incoming, outgoing = np.zeros_like(points), np.zeros_like(points)
         if len(times) > 2:
-            before, after = np.diff(points, axis=0)[:-1], np.diff(points, axis=0)[1:]
-            mean = ((times[2:] - times[:-2]) / 2.0)[:, None]
+            steps = np.diff(points, axis=0)
+            before, after = steps[:-1], steps[1:]
+            mean = ((times[2:] - times[:-2]) / 2.0).reshape(-1, *(1,) * (points.ndim - 1))
             t, c, b = style.tension, style.fluidity, style.bias
-            low, high = (1.0 - t) * (1.0 + b) / 2.0, (1.0 - t) * (1.0 - b) / 2.0
-            incoming[1:-1] = ((1.0 - c) * low * before + (1.0 + c) * high * after) / mean
-            outgoing[1:-1] = ((1.0 + c) * low * before + (1.0 - c) * high * after) / mean
+            weights = [
+                min((1.0 - t) * (1.0 + side * c) * (1.0 + sign * b) / 2.0, MOST_WEIGHT)
+                for side, sign in ((-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0))
+            ]
+            incoming[1:-1] = (weights[0] * before + weights[1] * after) / mean
+            outgoing[1:-1] = (weights[2] * before + weights[3] * after) / mean
         return TcbSpline(times, points, incoming, outgoing)
-
-    def straighten(self, segment: int) -> "TcbSpline":
-        """Return the path with one segment straight: its tangents keep the part along it."""
-        chord = self.points[segment + 1] - self.points[segment]
-        squared = float(chord @ chord)
-        incoming, outgoing = self.incoming.copy(), self.outgoing.copy()
-        for tangents, key in ((outgoing, segment), (incoming, segment + 1)):
-            share = float(tangents[key] @ chord) / squared if squared > 0.0 else 0.0
-            tangents[key] = chord * share
-        return TcbSpline(self.times, self.points, incoming, outgoing)
-
-    def segment(self, number: int, u: Array) -> Array:
-        """Return the points of a segment at shares u (m,) of its time, (m, n)."""
-        start, end = self.points[number], self.points[number + 1]
-        length = float(self.times[number + 1] - self.times[number])
-        out, into = self.outgoing[number] * length, self.incoming[number + 1] * length
-        u = u[:, None]
-        rest = u - 1.0
-        points: Array = (
-            (1.0 + 2.0 * u) * rest**2 * start
-            + u * rest**2 * out
-            + u**2 * (3.0 - 2.0 * u) * end
-            + u**2 * rest * into
-        )
-        return points

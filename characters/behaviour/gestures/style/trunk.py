@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
 from cubeling.characters.behaviour.gestures.gathering import PartKeys
-from cubeling.characters.behaviour.gestures.style.splines import TcbSpline
 from cubeling.characters.behaviour.symbolic_gesture import BodyKey
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
@@ -17,8 +16,8 @@ from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 SHRUG_DEG = 24.0
 """Turn of raised shoulders [degrees]."""
 
-SAMPLES = 6
-"""Postures from key to key."""
+BODY_EXTENT = 0.5
+"""Part of the extent of a gesture, `spatial`, by which trunk, shoulders and head move more."""
 
 LEAN, SIDE, TURN, SHRUG, NOD, TILT, SHAKE = range(7)
 """Columns of a body track: those of `BodyKey` [rad], but for the shrug, 0…1."""
@@ -40,7 +39,7 @@ def torso_controller(keys: Array, power: float) -> Array:
 def body_track(
     keys: tuple[BodyKey, ...], mirrored: bool, expressivity: GestureExpressivity
 ) -> PartKeys:
-    """Return trunk, shoulders and head over time, (n, 7)."""
+    """Return trunk, shoulders and head at their keys, (n, 7)."""
     side = -1.0 if mirrored else 1.0
     rows = np.radians(
         [
@@ -56,18 +55,9 @@ def body_track(
             for key in keys
         ]
     ).reshape(-1, 7)
+    rows *= 1.0 + BODY_EXTENT * expressivity.spatial
     rows[:, : TURN + 1] = torso_controller(rows[:, : TURN + 1], expressivity.power)
-    times = np.array([key.at for key in keys])
-    if len(keys) < 2:
-        return PartKeys(times, rows)
-    spline = TcbSpline.of(times, rows, expressivity)
-    u = np.linspace(0.0, 1.0, SAMPLES + 1)
-    dense_times, dense = [times[:1]], [rows[:1]]
-    for number in range(len(keys) - 1):
-        start, end = times[number], times[number + 1]
-        dense_times.append(np.append(start + (end - start) * u[1:-1], end))
-        dense.append(spline.segment(number, u)[1:])
-    return PartKeys(np.concatenate(dense_times), np.concatenate(dense))
+    return PartKeys(np.array([key.at for key in keys]), rows)
 
 
 @dataclass(frozen=True, eq=False)

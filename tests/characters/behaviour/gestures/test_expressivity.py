@@ -1,22 +1,35 @@
 """Splines and easings of expressive gestures (Huang 2013, section 8.7)."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.characters.behaviour.expressivity import GestureExpressivity
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.gestures.style.easing import (
     ease_time,
     out_back,
     out_bounce,
     out_quart,
 )
+from cubeling.characters.behaviour.gestures.style.effect import without_effect
 from cubeling.characters.behaviour.gestures.style.splines import TcbSpline
 from cubeling.characters.behaviour.gestures.style.trunk import torso_controller
+from cubeling.characters.smoothing import hermite
 
 TIMES = np.array([0.0, 0.2, 0.7, 1.0])
 POINTS = np.array([[0.0, 0.0], [1.0, 0.5], [0.5, 2.0], [-1.0, 0.0]])
 UNIT = st.floats(-1.0, 1.0)
+
+
+def segment(spline, number, u):
+    """Return the points of a segment at shares u (m,) of its time."""
+    length = float(spline.times[number + 1] - spline.times[number])
+    slopes = length * spline.outgoing[number], length * spline.incoming[number + 1]
+    ends = spline.points[number : number + 2]
+    return np.array([hermite(ends[0], slopes[0], ends[1], slopes[1], float(each)) for each in u])
 
 
 @given(UNIT, UNIT, UNIT)
@@ -24,14 +37,14 @@ def test_splines_go_through_their_keys(tension, fluidity, bias):
     style = GestureExpressivity(tension=tension, fluidity=fluidity, bias=bias)
     spline = TcbSpline.of(TIMES, POINTS, style)
     for number in range(3):
-        ends = spline.segment(number, np.array([0.0, 1.0]))
+        ends = segment(spline, number, np.array([0.0, 1.0]))
         assert ends == pytest.approx(POINTS[number : number + 2], abs=1e-12)
 
 
 def _speeds(spline, key):
     step = 1e-6
-    before = spline.segment(key - 1, np.array([1.0 - step, 1.0]))
-    after = spline.segment(key, np.array([0.0, step]))
+    before = segment(spline, key - 1, np.array([1.0 - step, 1.0]))
+    after = segment(spline, key, np.array([0.0, step]))
     lengths = np.diff(spline.times)
     return (
         (before[1] - before[0]) / (step * lengths[key - 1]),
@@ -65,19 +78,20 @@ def test_uniform_keys_give_catmull_rom():
 def test_bias_overshoots_after_a_key():
     times, points = np.arange(3.0), np.array([[0.0], [1.0], [1.0]])
     biased, plain = (
-        TcbSpline.of(times, points, GestureExpressivity(bias=bias)).segment(
-            1, np.linspace(0.0, 1.0, 50)
+        segment(
+            TcbSpline.of(times, points, GestureExpressivity(bias=bias)),
+            1,
+            np.linspace(0.0, 1.0, 50),
         )
         for bias in (1.0, 0.0)
     )
     assert biased.max() > plain.max() > 1.0
 
 
-def test_a_straight_segment_stays_on_its_line():
-    spline = TcbSpline.of(TIMES, POINTS).straighten(1)
-    way = spline.segment(1, np.linspace(0.0, 1.0, 20)) - POINTS[1]
-    chord = POINTS[2] - POINTS[1]
-    assert way[:, 0] * chord[1] == pytest.approx(way[:, 1] * chord[0], abs=1e-12)
+def test_no_mix_of_parameters_pulls_harder_than_one_at_its_end():
+    wild = TcbSpline.of(TIMES, POINTS, GestureExpressivity(tension=-1.0, fluidity=-1.0, bias=1.0))
+    one = TcbSpline.of(TIMES, POINTS, GestureExpressivity(bias=1.0))
+    assert np.abs(wild.incoming).max() <= np.abs(one.incoming).max() + 1e-12
 
 
 @pytest.mark.parametrize("easing", [out_quart, out_back, out_bounce])
@@ -122,3 +136,11 @@ def test_the_torso_controller_is_linear_in_power():
     assert added[1] == pytest.approx(2.0 * added[0])
     assert added[2] == pytest.approx(4.0 * added[0])
     assert added[2][1] == pytest.approx(keys[1] - keys[0])
+
+
+def test_few_gestures_say_of_a_parameter_that_it_does_nothing():
+    said = Counter(
+        name for each in GestureCollection.load_bundled() for name in without_effect(each)
+    )
+    assert set(said) == {"spatial"}
+    assert said["spatial"] <= 6

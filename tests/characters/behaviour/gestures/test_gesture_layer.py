@@ -1,5 +1,6 @@
 """Gestures in the frames of an animator: on time, without jumps, with the free hand."""
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
 from cubeling.characters.behaviour.gestures.planning import GestureRealizer
-from cubeling.characters.behaviour.gestures.timing import natural_times, phase_at
+from cubeling.characters.behaviour.gestures.timing import PhaseTimes, natural_times
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
 from cubeling.characters.control.layers.gestures import GestureLayer
@@ -182,6 +183,31 @@ def test_two_gestures_of_two_hands_are_performed_at_once(human, performer):
         assert np.ptp(_heights(performer, poses, side)) > 0.2
 
 
+def test_a_gesture_goes_on_from_the_one_before(human, performer):
+    held = replace(LIFT, right=LIFT.right[:2], apex=1.0, stroke=0.6)
+    up = replace(natural_times(held, 0.2), relax=1.5, end=2.1)
+    next_times = natural_times(held, 1.55)
+    one, other = (
+        GestureIntent("a", held, up),
+        GestureIntent("b", replace(held, name="B"), next_times),
+    )
+    shown, poses = _play(human, lambda now: BehaviourIntent((one, other)), 2.6)
+    heights = _heights(performer, poses)
+    between = (shown > up.stroke_end) & (shown < next_times.stroke_end)
+    hanging = heights[0]
+    # It comes down to its own first key, and not to rest.
+    low = heights[(shown >= next_times.ready) & (shown < next_times.ready + 0.05)].min()
+    assert heights[between].min() > low - 0.1 * (low - hanging)
+    assert _largest_step(poses) < MAX_STEP_DEG
+
+
+def test_a_body_with_one_arm_performs_with_that_one(human):
+    realizer = GestureRealizer.of(human)
+    one_arm = replace(realizer, body=copy(realizer.body))
+    one_arm.body.arms = {"left": realizer.body.arms["left"]}
+    assert set(one_arm.planning(LIFT, "right").keys) == {"left"}
+
+
 GESTURES = "CLAP", "WAVE", "THINK", "BOW", "FIST_PUMP"
 SHOWN = [("human", "CLAP"), ("vleo", "WAVE"), ("robot", "FIST_PUMP"), ("human", "BOW")]
 SHOWN += [(name, gesture) for gesture in GESTURES for name in ("human", "vleo", "robot")]
@@ -202,6 +228,7 @@ def test_a_character_without_arms_goes_on(actor):
 
 
 def test_phases_without_length_are_passed():
-    times = replace(natural_times(LIFT, 1.0), ready=1.0, stroke_start=1.0)
-    assert phase_at(times, 0.99, 0.5, 0.6) == 0.0
-    assert phase_at(times, 1.0 + 1e-3, 0.5, 0.6) >= 1.0
+    natural = PhaseTimes(natural_times(LIFT, 1.0), 0.5, 0.6)
+    at_once = PhaseTimes(replace(natural_times(LIFT, 1.0), ready=1.0, stroke_start=1.0), 0.5, 0.6)
+    assert at_once.at(0.99, natural) == natural.start
+    assert at_once.at(1.0 + 1e-3, natural) >= natural.ready

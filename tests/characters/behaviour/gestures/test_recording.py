@@ -30,7 +30,8 @@ def _recorded(performer, gesture, hand):
     def pose(time):
         up, down = np.clip([time / 0.6, (2.2 - time) / 0.6], 0.0, 1.0)
         weight = min(up * up * (3.0 - 2.0 * up), down * down * (3.0 - 2.0 * down))
-        return motion.over(performer.posture, min(max(time - 0.6, 0.0), 1.0), float(weight))
+        share = min(max(time - 0.6, 0.0), 1.0)
+        return motion.over(performer.posture, motion.times.in_stroke(share), float(weight))
 
     poses = [pose(float(time)) for time in np.arange(0.0, 2.2, 1 / 60)]
     return Clip("take", 60.0, Pose.of_frames(poses), loop=False)

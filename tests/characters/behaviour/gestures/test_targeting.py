@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
-from cubeling.characters.behaviour.gestures.targeting import PathFormula, ramp
+from cubeling.characters.behaviour.gestures.style.splines import TcbSpline
+from cubeling.characters.behaviour.gestures.targeting import PathFormula, path_points
 from cubeling.characters.behaviour.symbolic_gesture import HandKey
+from tests.characters.behaviour.gestures.test_expressivity import segment
 
 TIMES = np.linspace(0.0, 1.0, 41)
 
@@ -52,9 +54,24 @@ def test_a_wave_goes_to_and_fro_as_often_as_asked_and_ends_at_its_key():
     assert wave[-1] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_ramped_times_start_and_stop_at_rest_and_run_evenly_between():
-    t = np.linspace(0.0, 1.0, 2001)
-    speed = np.gradient(ramp(t), t)
-    assert ramp(np.array([0.0, 1.0])) == pytest.approx([0.0, 1.0])
-    assert speed[[0, -1]] == pytest.approx([0.0, 0.0], abs=0.01)
-    assert np.ptp(speed[400:1600]) < 1e-6
+def test_a_spline_through_the_points_of_a_circle_is_round():
+    key = HandKey(1.0, path="circle", radius=(0.3, 0.3, 0.0), turns=2.0)
+    shares = np.array([0.0, *path_points(key, 0.0), 1.0])
+    spline = TcbSpline.of(shares, PathFormula.of(key, np.array(key.radius)).at(shares))
+    inner = [segment(spline, n, np.linspace(0.0, 1.0, 9)) for n in range(1, len(shares) - 2)]
+    assert np.linalg.norm(np.concatenate(inner), axis=1) == pytest.approx(0.3, abs=0.003)
+
+
+def test_a_wave_has_a_point_at_each_turn():
+    key = HandKey(1.0, path="wave", radius=(0.2, 0.0, 0.0), turns=1.5)
+    wave = PathFormula.of(key, np.array(key.radius)).offsets(path_points(key, 0.0))
+    assert wave[:, 0] == pytest.approx([0.2, -0.2, 0.2])
+
+
+@pytest.mark.parametrize(
+    ("path", "length", "points"),
+    [("keys", 1.0, 0), ("line", 0.1, 0), ("line", 1.0, 1), ("arc", 0.1, 1)],
+)
+def test_long_lines_and_arcs_have_a_middle(path, length, points):
+    radius = (0.0, 0.1, 0.0) if path == "arc" else (0.0, 0.0, 0.0)
+    assert len(path_points(HandKey(1.0, path=path, radius=radius), length)) == points
