@@ -4,16 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cubeling.characters.speech.accents import (
-    LOUDNESS_EXPONENT,
-    AccentSettings,
-    accents_of,
-    syllable_nuclei,
-)
+from cubeling.characters.speech.accents import AccentSettings, accents_of, syllable_nuclei
 from cubeling.characters.speech.contours import Prosody, measure_prosody
 from cubeling.characters.speech.speech import Phone, Speech, Syllable, Utterance
 from cubeling.characters.speech.strength import scale_between_quantiles
 from cubeling.characters.speech.tagged_text import TaggedText
+
+LOUDNESS_EXPONENT = 0.6
+"""Loudness grows with this power of the sound pressure (S. S. Stevens 1955, "The measurement of
+loudness", Journal of the Acoustical Society of America 27(5))."""
 
 
 def utterance_of(

@@ -145,7 +145,9 @@ def elbow_misses(recorded: RecordedArm) -> dict[str, Array]:
     chains = Chains(np.stack([upper, lower]))
     start = np.tile(rotations.IDENTITY, (len(recorded.wrists), 2, 1))
     arm, shoulder = recorded.arm, (0.0, 0.0, 0.0)
-    natural, shifted, shift = [], [], None
+    natural: list[Vector] = []
+    shifted: list[Vector] = []
+    shift = None
     for number, place in enumerate(recorded.wrists):
         wrist, true = to_vector(place), to_vector(recorded.elbows[number])
         swivel = natural_swivel(arm, shoulder, wrist, IDENTITY)

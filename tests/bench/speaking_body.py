@@ -22,12 +22,11 @@ from cubeling.characters.control.speech_profile import SpeechProfile
 from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from cubeling.characters.face.lids import Lids
 from cubeling.characters.smoothing import gaussian_smooth
-from cubeling.characters.speech.accents import LOUDNESS_EXPONENT
 from cubeling.characters.speech.audio import read_speech
 from cubeling.characters.speech.contours import measure_prosody
 from cubeling.characters.speech.mouth import phones_from_sound
 from cubeling.characters.speech.phrases import phrases_of
-from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.prosody import LOUDNESS_EXPONENT, utterance_of
 from cubeling.characters.speech.saying import say
 from cubeling.characters.speech.speech import Utterance
 from cubeling.characters.speech.tagged_text import TaggedText
@@ -131,7 +130,7 @@ def play(
 
 def speeds(path: Array) -> Array:
     """Return the speed along a path, (n,) [m/s]."""
-    return np.linalg.norm(np.gradient(path, 1.0 / RATE, axis=0), axis=1)
+    return np.asarray(np.linalg.norm(np.gradient(path, 1.0 / RATE, axis=0), axis=1))
 
 
 def hand_speed(played: Played) -> Array:
@@ -251,7 +250,7 @@ def knee_deg(played: Played, side: str) -> Array:
     hip, knee, foot = (played.places[side + p] for p in ("UpperLeg", "LowerLeg", "Foot"))
     upper, lower = knee - hip, foot - knee
     cosine = (upper * lower).sum(1) / np.linalg.norm(upper, axis=1) / np.linalg.norm(lower, axis=1)
-    return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    return np.asarray(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
 
 
 def elbow_cm(played: Played) -> Array:
@@ -262,7 +261,7 @@ def elbow_cm(played: Played) -> Array:
     for side in ("left", "right"):
         offset = played.places[side + "LowerArm"] - low
         away.append(np.linalg.norm(offset - (offset * way).sum(1)[:, None] * way, axis=1))
-    return 100 * np.mean(away, axis=0)
+    return np.asarray(100 * np.mean(away, axis=0))
 
 
 def blinks(character: Character, played: Played) -> tuple[float, float]:

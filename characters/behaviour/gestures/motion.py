@@ -246,7 +246,13 @@ class GestureMotion:
             slopes.append(slope)
         lags = 16.0 * np.minimum(self._lags / length, MOST_LAG)[:, None]
         return _Segment(
-            length, points[own], points[own + 1], *slopes, lags, np.flatnonzero(wide[own])
+            length,
+            points[own],
+            points[own + 1],
+            slopes[0],
+            slopes[1],
+            lags,
+            np.flatnonzero(wide[own]),
         )
 
 

@@ -18,5 +18,7 @@ def test_a_turn_of_the_cube_emphasises_what_is_said_as_far_as_the_profile_lets_i
     command = CharacterCommand(1.0, action=ActionIntent("idle", 0.5))
     first = speaking.update(line, command, silence=False)
     later = speaking.update(None, replace(command, timestamp=1.5), silence=False)
-    assert (first.start, first.emphasis) == (1.0, pytest.approx(emphasis))
-    assert (later.start, later.emphasis) == (1.0, pytest.approx(emphasis))
+    assert first is not None
+    assert later is not None
+    assert first.start == later.start == 1.0
+    assert [first.emphasis, later.emphasis] == pytest.approx([emphasis, emphasis])

@@ -23,6 +23,7 @@ def test_what_agrees_scores_one_and_what_is_elsewhere_nothing():
     assert (same.precision, same.recall, same.f1, same.words) == (1.0, 1.0, 1.0, 1.0)
     other = LabelAgreement.of(labels_at(0.2, 1.2), accents_at(2.2, 3.2), WORDS)
     assert (other.precision, other.recall, other.f1) == (0.0, 0.0, 0.0)
+    assert other.words is not None
     assert other.words < 0.0
     assert LabelAgreement.of(labels_at(0.2), accents_at(0.2)).words is None
 
