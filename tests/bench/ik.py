@@ -57,7 +57,7 @@ from cubeling.characters.ik.solvers.solving import SOLVERS, TOLERANCE, solve
 from cubeling.characters.retargeting.recording import load_recording
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array
-from cubeling.characters.skeleton.scalar_quaternions import IDENTITY
+from cubeling.characters.skeleton.scalar_quaternions import IDENTITY, Vector
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 BLOCK = 5000
