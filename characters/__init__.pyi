@@ -49,7 +49,7 @@ from cubeling.characters.errors import (
 from cubeling.characters.formats.loading import load_motion as load_motion
 from cubeling.characters.locomotion.footfalls import Footfall as Footfall, Footfalls as Footfalls
 from cubeling.characters.locomotion.gaits import IDLE_SPEED as IDLE_SPEED, RUN_SPEED as RUN_SPEED
-from cubeling.characters.locomotion.obstacles import Obstacle as Obstacle, View as View
+from cubeling.characters.locomotion.obstacles import Obstacle as Obstacle, TableView as TableView
 from cubeling.characters.locomotion.paths import ClosedPath as ClosedPath
 from cubeling.characters.locomotion.places import past_circle as past_circle
 from cubeling.characters.model.character import Character as Character

@@ -17,10 +17,10 @@ class CharacterWarning(UserWarning):
     """Bad input that was repaired. The message says what was wrong, where, and what was done."""
 
 
-def listed(names: Collection[str]) -> str:
+def name_list(names: Collection[str]) -> str:
     """Return names for a message: "a, b, c", and "…" for what is more than `MAX_LISTED`.
 
-    >>> listed(["start", "end"]), listed([]), listed("abcdefghijklmn")[-7:]
+    >>> name_list(["start", "end"]), name_list([]), name_list("abcdefghijklmn")[-7:]
     ('start, end', '', 'k, l, …')
     """
     return ", ".join(islice(names, MAX_LISTED)) + (", …" if len(names) > MAX_LISTED else "")

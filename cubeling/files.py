@@ -66,12 +66,12 @@ class FileKind:
         try:
             file = _OpenFile(io.FileIO(path, opener=_open_at_once))
         except OSError as cause:
-            raise self._refused(path, cause.strerror or str(cause)) from None
+            raise self._refusal(path, cause.strerror or str(cause)) from None
         size = os.fstat(file.fileno()).st_size
         if size > self.max_bytes:
             file.close()
             most = f"of at most {_amount(self.max_bytes)}"
-            raise self._refused(path, f"it has {_amount(size)}, {most}")
+            raise self._refusal(path, f"it has {_amount(size)}, {most}")
         return file
 
     def check(self, path: str | Path) -> None:
@@ -84,9 +84,9 @@ class FileKind:
             try:
                 data = file.read(self.max_bytes + 1)
             except OSError as cause:
-                raise self._refused(path, cause.strerror or str(cause)) from None
+                raise self._refusal(path, cause.strerror or str(cause)) from None
         if len(data) > self.max_bytes:  # it grows, or its size is not known
-            raise self._refused(path, f"it has more than {_amount(self.max_bytes)}")
+            raise self._refusal(path, f"it has more than {_amount(self.max_bytes)}")
         return data
 
     def read_text(self, path: str | Path) -> str:
@@ -95,9 +95,9 @@ class FileKind:
             return self.read(path).decode("utf-8-sig")
         except UnicodeDecodeError as cause:
             reason = f"it is not UTF-8 (byte {cause.start}); save it as that"
-            raise self._refused(path, reason) from None
+            raise self._refusal(path, reason) from None
 
-    def _refused(self, path: str | Path, reason: str) -> Exception:
+    def _refusal(self, path: str | Path, reason: str) -> Exception:
         return _unreadable(path, self.name, reason, self.error)
 
 

@@ -252,7 +252,7 @@ class TomlTable:
         hints, required = _fields(kind)  # type: ignore[arg-type] # classes are hashable
         self.only(*hints)
         values = {
-            key: self._typed(key, hint)
+            key: self._value_as(key, hint)
             for key, hint in hints.items()
             if key in self or key in required
         }
@@ -273,11 +273,11 @@ class TomlTable:
         value = self._values[key] if value is None else value
         return self._error(key, f" must be {allowed}, not {excerpt(value)}")
 
-    def _typed(self, key: str, hint: Any) -> Any:
+    def _value_as(self, key: str, hint: Any) -> Any:
         """Return the value of a key as a type says, one of those that `fill` knows."""
         args = get_args(hint)
         if get_origin(hint) in (Union, types.UnionType):  # None is a key that is left out
-            return self._typed(key, args[0])
+            return self._value_as(key, args[0])
         if get_origin(hint) is Literal:
             return self.choice(key, args)
         if dataclasses.is_dataclass(hint):

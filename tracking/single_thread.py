@@ -15,7 +15,7 @@ Result = TypeVar("Result")
 
 
 @cache
-def _threaded() -> ThreadpoolController | None:
+def _thread_controller() -> ThreadpoolController | None:
     """Return what limits the threads of linear algebra; None where there is one thread anyway."""
     libraries = ThreadpoolController().select(user_api="blas")
     several = any(each["num_threads"] > 1 for each in libraries.info())
@@ -27,7 +27,7 @@ def on_one_thread(work: Callable[Given, Result]) -> Callable[Given, Result]:
 
     @wraps(work)
     def limited(*given: Given.args, **named: Given.kwargs) -> Result:
-        threaded = _threaded()
+        threaded = _thread_controller()
         if threaded is None:
             return work(*given, **named)
         with threaded.limit(limits=1):

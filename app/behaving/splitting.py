@@ -7,13 +7,13 @@ from xml.parsers import expat
 MAX_BYTES = 1 << 20
 """Size of a document that is taken."""
 
-BETWEEN = b" \t\r\n\xef\xbb\xbf"
+SEPARATORS = b" \t\r\n\xef\xbb\xbf"
 """Bytes between documents: white space, and the mark of UTF-8."""
 
 LONG_MARKUP = {b"<!--": b"-->", b"<![CDATA[": b"]]>", b"<?": b"?>"}
 """What markup that is no tag begins and ends with."""
 
-_SPACE = re.compile(rb"[%s]*" % BETWEEN)
+_SPACE = re.compile(rb"[%s]*" % SEPARATORS)
 
 _IN_TAG = re.compile(rb"[\"'<>]")
 
@@ -62,7 +62,7 @@ class DocumentSplitter:
 
     def _take(self, piece: bytes) -> None:
         if not self._document:
-            piece = piece.lstrip(BETWEEN)
+            piece = piece.lstrip(SEPARATORS)
             if not piece.startswith(b"<"):
                 raise StreamBroken("not XML (a document begins with <)")
         self._document += piece

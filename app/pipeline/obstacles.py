@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.situation import table_from_cube
-from cubeling.characters import Obstacle, View
+from cubeling.characters import Obstacle, TableView
 from cubeling.tracking import CubeControls, CubeState, Intrinsics
 
 Array = NDArray[np.float64]
@@ -70,7 +70,7 @@ def _arm(cube: Array) -> Array:
     return pose
 
 
-def view_of(controls: CubeControls, camera: Intrinsics) -> View | None:
+def view_of(controls: CubeControls, camera: Intrinsics) -> TableView | None:
     """Return how a camera sees the table; None before the table is known."""
     table = controls.camera_from_table
     if table is None:
@@ -78,4 +78,6 @@ def view_of(controls: CubeControls, camera: Intrinsics) -> View | None:
     (fx, _, cx), (_, fy, cy), _ = camera.matrix.tolist()
     width, height = camera.size
     planes = [[fx, 0, cx], [-fx, 0, width - cx], [0, fy, cy], [0, -fy, height - cy]]
-    return View(np.asarray(np.linalg.inv(table)[:3, 3], float), np.array(planes, float) @ table[:3])
+    return TableView(
+        np.asarray(np.linalg.inv(table)[:3, 3], float), np.array(planes, float) @ table[:3]
+    )

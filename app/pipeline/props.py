@@ -20,7 +20,7 @@ Side = Literal["left", "right"]
 CLEARANCE_M = 0.006
 """Between the front of the body and what it stands before, if it reaches so far [m]."""
 
-COMFORTABLE = 0.7
+COMFORTABLE_EFFORT = 0.7
 """Effort with which it takes a thing: it leans, but not as far as it can."""
 
 FINGERS_M, PAW_M = 0.012, 0.03
@@ -93,7 +93,7 @@ def _stand_distance(character: Character, scale: float) -> float:
     placed = np.diag([scale, scale, scale, 1.0])
     distances = np.arange(distance, 0.4 * distance, -0.005).tolist()
     for each in distances if character.upper_body.arms else ():
-        if reach_effort(character, placed, GRIP + [0.0, 0.0, each]) < COMFORTABLE:
+        if reach_effort(character, placed, GRIP + [0.0, 0.0, each]) < COMFORTABLE_EFFORT:
             return float(each)
     return distance
 

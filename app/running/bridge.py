@@ -58,7 +58,7 @@ class RecordedPlayer:
 
 def _messages(path: Path) -> Iterator[tuple[float, CharacterCommand | EmotionTarget]]:
     with SessionFile(path) as session:
-        for _, time, message in session.decoded(PUBLISHED_TOPICS):
+        for _, time, message in session.decode_messages(PUBLISHED_TOPICS):
             yield time, message
 
 

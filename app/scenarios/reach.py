@@ -117,7 +117,7 @@ class Reach:
             scene, facts, events = self._decide(controls, situation, body, self._cube)
         going = LocomotionIntent(facing=PLAYER_POSITION, exact=True)
         if scene is not None and body is not None:
-            going = _going(scene, body, situation.walks, self._edge)
+            going = _next_place(scene, body, situation.walks, self._edge)
         stands = ActionIntent("idle") if going.target is None else None
         behaviour = self._hands.update(now, scene, body)
         command = CharacterCommand(now, going, stands, visible=visible, behaviour=behaviour)
@@ -148,7 +148,7 @@ class Reach:
         stand = gifts.stand_point(body.place, centre, body.parts.stand)
         there = stand is not None and gap(body.place, stand, 0.0) <= ARRIVED_M
         events += gifts.update(prospect.now, centre, body, free=free, there=there)
-        doing = self._doing(free)
+        doing = self._next_act(free)
         facts = facts_of(doing, prospect, self._catching, self._edge, gifts.named)
         scene = ReachScene(
             doing=doing,
@@ -174,7 +174,7 @@ class Reach:
             return False
         return self._gifts.busy or self._catching.content
 
-    def _doing(self, free: bool) -> str:
+    def _next_act(self, free: bool) -> str:
         """Return what it does: the cube out of sight goes first, then things, then the cube."""
         if self._catching.doing == "search":
             return "search"
@@ -217,7 +217,7 @@ def _clasp_distance(body: PosedBody, edge: float) -> float:
     return edge / 2 + body.parts.stand
 
 
-def _going(scene: ReachScene, body: PosedBody, walks: bool, edge: float) -> LocomotionIntent:
+def _next_place(scene: ReachScene, body: PosedBody, walks: bool, edge: float) -> LocomotionIntent:
     """Return where to go, or where to turn to."""
     here = body.place
     if scene.stand is not None:

@@ -176,7 +176,7 @@ class SessionFile:
                 ):
                     yield channel.topic, message.log_time / 1e9, message.data
 
-    def decoded(self, kinds: Mapping[str, type[Any]]) -> Iterator[tuple[str, float, Any]]:
+    def decode_messages(self, kinds: Mapping[str, type[Any]]) -> Iterator[tuple[str, float, Any]]:
         """Yield (topic, timestamp [s], message) as `messages` does, for the types of some topics.
 
         Raises
@@ -185,12 +185,12 @@ class SessionFile:
             A message is not what a recorder writes.
         """
         for topic, time, data in self.messages(*kinds):
-            with self._refusing(topic, time):
+            with self._named_message(topic, time):
                 message = decode(kinds[topic], data)
             yield topic, time, message
 
     @contextmanager
-    def _refusing(self, topic: str, time: float) -> Iterator[None]:
+    def _named_message(self, topic: str, time: float) -> Iterator[None]:
         """Name the message of what a block refuses."""
         try:
             yield
@@ -221,7 +221,7 @@ class SessionFile:
         """
         found = []
         for topic, time, data in self.messages("/events"):
-            with self._refusing(topic, time):
+            with self._named_message(topic, time):
                 found.append((time, str(json.loads(data)["event"])))
         return found
 
@@ -237,7 +237,9 @@ class SessionFile:
         AppError
             A message is not what a recorder writes.
         """
-        found = {time: each for _, time, each in self.decoded({INPUTS_TOPIC: RecordedInputs})}
+        found = {
+            time: each for _, time, each in self.decode_messages({INPUTS_TOPIC: RecordedInputs})
+        }
         return found or self._older_inputs()
 
     @property
@@ -268,7 +270,7 @@ class SessionFile:
                 from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
                 from google.protobuf.message import DecodeError
 
-                with self._refusing(topic, time):
+                with self._named_message(topic, time):
                     try:
                         audio = RawAudio.FromString(data)
                     except DecodeError as error:
@@ -295,14 +297,14 @@ class SessionFile:
 
     def _replay_inputs(self, topics: tuple[str, ...]) -> Iterator[ReplayInputs]:
         kinds = {topic: CHANNEL_TYPES[topic] for topic in topics}
-        for _, found in groupby(self.decoded(kinds), key=itemgetter(1)):
+        for _, found in groupby(self.decode_messages(kinds), key=itemgetter(1)):
             yield ReplayInputs(**{FIELD_OF_TOPIC[topic]: message for topic, _, message in found})
 
     def _older_inputs(self) -> dict[float, RecordedInputs]:
         happened = set(self.events)
         speech: dict[float, SpeechIntent | None] = {}
         if sounds := {time for _, time, _ in self.messages(LINE_TOPIC)}:
-            for _, time, command in self.decoded({"/character/command": CharacterCommand}):
+            for _, time, command in self.decode_messages({"/character/command": CharacterCommand}):
                 if time in sounds:
                     speech[time] = command.speech
         asked = {time for time, event in happened if event in (START_OVER_EVENT, INSIDE_EVENT)}

@@ -9,7 +9,7 @@ from cubeling.affect import Emotion
 from cubeling.characters.behaviour.intents import BehaviourIntent
 from cubeling.characters.control.speech_profile import DEFAULT_PROFILE, SpeechProfile
 from cubeling.characters.locomotion.gaits import IDLE_SPEED
-from cubeling.characters.locomotion.obstacles import Obstacle, View
+from cubeling.characters.locomotion.obstacles import Obstacle, TableView
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.speech.speech import Utterance
 
@@ -103,7 +103,7 @@ class CharacterCommand:
     obstacles: tuple[Obstacle, ...] = ()
     """What the character keeps out of."""
 
-    view: View | None = None
+    view: TableView | None = None
     """How the table is seen: it prefers places where it is seen, too; None for any place."""
 
     @property

@@ -44,7 +44,7 @@ class TaggedGestures:
         if not active:
             return command
         own, asked = self._realizer.frame_of(active, now).intent, command.behaviour
-        return replace(command, behaviour=own if asked is None else _joined(asked, own))
+        return replace(command, behaviour=own if asked is None else _join(asked, own))
 
     def _follow(self, speech: SpeechIntent | None, now: float) -> None:
         """Schedule a new speech, and forget one that is cut off."""
@@ -123,7 +123,7 @@ def _behaviour(number: int, span: GestureSpan) -> Behaviour:
     )
 
 
-def _joined(one: BehaviourIntent, other: BehaviourIntent) -> BehaviourIntent:
+def _join(one: BehaviourIntent, other: BehaviourIntent) -> BehaviourIntent:
     return BehaviourIntent(
         *(getattr(one, each.name) + getattr(other, each.name) for each in fields(one))
     )

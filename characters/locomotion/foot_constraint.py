@@ -137,7 +137,7 @@ class FootConstraint:
         """Time since it was last held or let go [s]."""
         return self._age
 
-    def strained(self, standing: bool) -> bool:
+    def is_strained(self, standing: bool) -> bool:
         """Return whether its offset is too large; the limits are smaller while standing."""
         distance, twist = (
             (_MAX_STANDING_OFFSET, _MAX_STANDING_TWIST_RAD)

@@ -93,7 +93,7 @@ class FootLock:
         step_back = standing and others_held
         if not down:
             foot.release(points, step=False)
-        elif foot.held and (foot.strained(False) or (step_back and foot.strained(True))):
+        elif foot.held and (foot.is_strained(False) or (step_back and foot.is_strained(True))):
             foot.release(points, step=True)
         elif foot.held or foot.may_land(points):
             foot.hold(points)

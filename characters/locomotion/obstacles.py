@@ -78,7 +78,7 @@ class Obstacle:
         first, last = np.minimum(one, other).max(axis=-1), np.maximum(one, other).min(axis=-1)
         return np.asarray((first < last) & (first < 1.0) & (last > 0.0))
 
-    def needed(
+    def needed_moves(
         self, points: Array, times: Sequence[float], room: float, going: Array = STANDING
     ) -> Array:
         """Return how far a body must move to be apart from it at some times, (times, 24) [m].
@@ -115,7 +115,7 @@ class Obstacle:
 
 
 @dataclass(frozen=True)
-class View:
+class TableView:
     """From where and how far the table is seen."""
 
     eye: Array

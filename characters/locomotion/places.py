@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.locomotion.obstacles import DIRECTIONS, STANDING, Obstacle, View
+from cubeling.characters.locomotion.obstacles import DIRECTIONS, STANDING, Obstacle, TableView
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ FRONT = 0.05
 RINGS_M = (0.03, 0.06, 0.09, 0.12, 0.16, 0.20)
 """How far away places are that are looked at [m]."""
 
-SEEN = 0.2
+MAX_HIDDEN_SHARE = 0.2
 """Share of a body that may be hidden at a better place."""
 
 PLACE_ROOM_M = 0.012
@@ -64,7 +64,7 @@ def way_out(
     obstacles: Sequence[Obstacle],
     times: Sequence[float],
     rooms: Sequence[float],
-    view: View | None = None,
+    view: TableView | None = None,
     last: Array | None = None,
     going: Array = STANDING,
 ) -> WayOut | None:
@@ -87,7 +87,7 @@ def way_out(
     """
     needed = np.stack(
         [
-            each.needed(points, times, room, going)
+            each.needed_moves(points, times, room, going)
             for each, room in zip(obstacles, rooms, strict=True)
         ]
     )
@@ -111,21 +111,23 @@ def way_out(
     return WayOut(DIRECTIONS[:, best], float(distances[best]), float(times[first]))
 
 
-def hidden_share(points: Array, obstacles: Sequence[Obstacle], view: View) -> float:
+def hidden_share(points: Array, obstacles: Sequence[Obstacle], view: TableView) -> float:
     """Return how much of a body, points (n, 3), is not seen, 0…1."""
     return float(view.misses(_few(points), obstacles).mean())
 
 
-def is_good(points: Array, obstacles: Sequence[Obstacle], view: View | None) -> bool:
+def is_good(points: Array, obstacles: Sequence[Obstacle], view: TableView | None) -> bool:
     """Return whether a body, points (n, 3), is clear of obstacles and seen."""
-    clear = all(float(each.needed(points, (0.0,), PLACE_ROOM_M).min()) <= 0.0 for each in obstacles)
-    return clear and (view is None or hidden_share(points, obstacles, view) <= SEEN)
+    clear = all(
+        float(each.needed_moves(points, (0.0,), PLACE_ROOM_M).min()) <= 0.0 for each in obstacles
+    )
+    return clear and (view is None or hidden_share(points, obstacles, view) <= MAX_HIDDEN_SHARE)
 
 
 def better_place(
     points: Array,
     obstacles: Sequence[Obstacle],
-    view: View | None,
+    view: TableView | None,
     kept: Array = STANDING,
     straight: bool = False,
 ) -> Array | None:
@@ -135,7 +137,7 @@ def better_place(
     may be in the way there.
     """
     every = np.concatenate([kept[None], _RINGS])
-    needed = np.stack([each.needed(points, (0.0,), PLACE_ROOM_M)[0] for each in obstacles])
+    needed = np.stack([each.needed_moves(points, (0.0,), PLACE_ROOM_M)[0] for each in obstacles])
 
     def is_clear(ways: Array) -> NDArray[np.bool_]:
         left = needed[:, None, :] - ways @ DIRECTIONS
@@ -151,7 +153,7 @@ def better_place(
     moved = _few(points) + np.insert(ways, 1, 0.0, axis=1)[:, None]
     hidden = view.misses(moved, obstacles).mean(axis=1)
     costs = np.linalg.norm(ways, axis=1) - FRONT * (ways @ _toward(view, points))
-    costs += HIDDEN_M * np.maximum(hidden - SEEN, 0.0)
+    costs += HIDDEN_M * np.maximum(hidden - MAX_HIDDEN_SHARE, 0.0)
     costs -= KEPT_M * (ways == kept).all(axis=1)
     return np.asarray(ways[int(np.argmin(costs))])
 
@@ -160,7 +162,7 @@ def _few(points: Array) -> Array:
     return points[:: -(-len(points) // FEW_POINTS)]
 
 
-def _toward(view: View, points: Array) -> Array:
+def _toward(view: TableView, points: Array) -> Array:
     """Return the direction from a body to the viewer over the table, (2,)."""
     way = view.eye[[0, 2]] - points[:, [0, 2]].mean(axis=0)
     return np.asarray(way / max(float(np.linalg.norm(way)), 1e-9))

@@ -91,7 +91,9 @@ def _rest_from_bind_pose(
     if distances[bound].max() < _MAX_REST_DISTANCE * size:
         return skeleton
     feet = [joint for part, joint in parts.items() if part.endswith(("Foot", "Toes"))]
-    return replace(skeleton, rest=_standing(pose, skeleton, feet or np.flatnonzero(bound).tolist()))
+    return replace(
+        skeleton, rest=_standing_pose(pose, skeleton, feet or np.flatnonzero(bound).tolist())
+    )
 
 
 def _bound_turns(
@@ -160,7 +162,7 @@ def _with_feet_at_shins(pose: Pose, skeleton: Skeleton, joints: Mapping[str, int
     return pose
 
 
-def _standing(pose: Pose, skeleton: Skeleton, feet: Sequence[int]) -> Pose:
+def _standing_pose(pose: Pose, skeleton: Skeleton, feet: Sequence[int]) -> Pose:
     """Return a pose that stands on the ground of the rest pose, its middle at x = 0.
 
     `feet` are joints of the feet, or of the body if its feet are not known.

@@ -18,7 +18,7 @@ from cubeling.characters.skeleton.masks import subtree
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 _SOLE_HEIGHT = 0.1  # of the way from the lowest vertex of a leg up to its last joint
-_TIP = 90.0  # percentile: what is farther from the shoulder is the tip of an arm
+_TIP_PERCENTILE = 90.0  # percentile: what is farther from the shoulder is the tip of an arm
 
 
 def with_limb_ends(
@@ -33,7 +33,7 @@ def with_limb_ends(
     names, parents = list(skeleton.names), list(skeleton.parents)
     offsets: list[Array] = []
     vertices: list[list[Array]] | None = None
-    for last, parts in _lacking(anatomy):
+    for last, parts in _short_limbs(anatomy):
         vertices = vertices or _vertices_of_joints(skeleton, meshes, rest)
         start = rest[last, :3, 3]
         points = [part for joint in subtree(skeleton, last) for part in vertices[joint]]
@@ -80,7 +80,7 @@ def with_more_joints(
     )
 
 
-def _lacking(anatomy: Anatomy) -> Iterator[tuple[int, tuple[str, ...]]]:
+def _short_limbs(anatomy: Anatomy) -> Iterator[tuple[int, tuple[str, ...]]]:
     """Return the last joint of each limb that is too short, and the parts it lacks."""
     joints = anatomy.joints
     for limb in (side + row for side in SIDES for row in ("", "Front")):
@@ -127,7 +127,7 @@ def _tip(parts: Sequence[Array], joint: Array) -> Array | None:
     away = np.linalg.norm(points - joint, axis=-1)
     if away.max() < 1e-9:
         return None
-    return np.asarray(points[away >= np.percentile(away, _TIP)].mean(0))
+    return np.asarray(points[away >= np.percentile(away, _TIP_PERCENTILE)].mean(0))
 
 
 def _with_joints(poses: Pose, offsets: Array) -> Pose:

@@ -54,7 +54,7 @@ def find_contacts(clip: Clip, skeleton: Skeleton, feet: Feet) -> NDArray[np.bool
         for height, speed, share in zip(_HEIGHT_LIMITS, _SPEED_LIMITS, shares, strict=True)
     )
     rest = skeleton.rest.globals(skeleton)[joints, 1, 3]
-    grounded = _grounded(heights, rest, owner, _MAX_LOWEST_HEIGHT * tracks.body_height)
+    grounded = _touching_feet(heights, rest, owner, _MAX_LOWEST_HEIGHT * tracks.body_height)
     contacts = np.zeros((len(clip), len(feet)), bool)
     for number in range(len(feet)):
         own = owner == number
@@ -106,7 +106,7 @@ def _vertical_speeds(heights: Array, clip: Clip) -> Array:
     return speeds
 
 
-def _grounded(
+def _touching_feet(
     heights: Array, rest: Array, owner: NDArray[np.intp], margin: float
 ) -> NDArray[np.bool_]:
     """Return which feet come down at all, (feet,): near the lowest foot, or as low as at rest.

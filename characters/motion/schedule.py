@@ -104,7 +104,7 @@ class _Contribution:
 class Schedule:
     """Actions, mixed joint by joint; a `Motion`. Their order does not matter.
 
-    It is immutable: `adding`, `without` and `cut` return a new schedule on the same time line.
+    It is immutable: `with_action`, `without` and `cut` return a new schedule on the same time line.
     """
 
     actions: tuple[Action, ...]
@@ -133,7 +133,7 @@ class Schedule:
         """Return how the root moves over the ground between two times [s]."""
         return integrate_travel(start, end, self._travel)
 
-    def adding(self, action: Action) -> "Schedule":
+    def with_action(self, action: Action) -> "Schedule":
         """Return the schedule with another action."""
         return Schedule((*self.actions, action), self.rest)
 
@@ -237,7 +237,7 @@ class LiveSchedule:
 
     def add(self, action: Action) -> None:
         """Add an action; its start may be in the past."""
-        self.schedule = self.schedule.adding(action)
+        self.schedule = self.schedule.with_action(action)
 
     def remove(self, name: str) -> None:
         """Remove an action at once."""

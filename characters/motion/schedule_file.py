@@ -11,7 +11,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from cubeling.characters.errors import CharacterError, listed
+from cubeling.characters.errors import CharacterError, name_list
 from cubeling.characters.motion.curves import Adsr, Ease, FadeCurve, Product, Weight
 from cubeling.characters.motion.modifiers import Filtered, PoseFilter, Stretch, TimeWindow
 from cubeling.characters.motion.motion import Motion
@@ -172,7 +172,7 @@ class ScheduleReader:
     def _activate(self, element: XmlElement, pool: Mapping[str, Action]) -> Action:
         name, start = self._name(element), self._number(element, "offset", 0.0)
         if name not in pool:
-            raise self._error(element, f"no action {name!r}; there are {listed(pool) or 'none'}")
+            raise self._error(element, f"no action {name!r}; there are {name_list(pool) or 'none'}")
         action = pool[name]
         return replace(action, start=start)
 

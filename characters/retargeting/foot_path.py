@@ -50,7 +50,7 @@ class FootPath:
             corrections[first : first + length] = self._goal(first, length)
         return np.asarray(corrections + self.steps)
 
-    def stepping(self, missing: Array) -> "FootPath":
+    def with_steps_moved(self, missing: Array) -> "FootPath":
         """Return the path with each contact moved by the farthest that it is out of reach.
 
         `missing` leads from its end to where it can be, (frames, 3) [m].

@@ -153,13 +153,13 @@ def _hold(
             raised = heels.raise_legs(held, heels.tilts(held, pose))
             missing = np.moveaxis(raised.missing_reach(pose), 1, 0)
             paths = [
-                path.stepping(ground.directions_to_ground(way))
+                path.with_steps_moved(ground.directions_to_ground(way))
                 for path, way in zip(paths, missing, strict=True)
             ]
             held = replace(held, ankles=_held_places(paths, shift, ground) - to_balls)
     if rig.anatomy.kind == "humanoid":
         lowest = np.stack([ground.middle_cycle(path.lowest) for path in paths], axis=1)
-        held = held.swinging_as_long(pose, extensions, lowest - to_balls[..., 1])
+        held = held.with_swing_lengths(pose, extensions, lowest - to_balls[..., 1])
     heel_tilts = heels.tilts(held, pose)
     pose, held = heels.turn_by(pose, heel_tilts), heels.raise_legs(held, heel_tilts)
     ankles = rotations.rotate(rotations.conjugate(rig.common_from_skeleton), held.ankles)

@@ -52,7 +52,7 @@ class Heels:
             return tilts
         least = self._at(frames)._least(held.at(frames), pose[frames])
         tilts[frames] = np.where(out[frames], least, 0.0)
-        return _settling(tilts, self.on_ball, held.ground)
+        return _fade_in_air(tilts, self.on_ball, held.ground)
 
     def _least(self, held: HeldLegs, pose: Pose) -> Array:
         """Return the least tilts by which legs reach their feet, (frames, legs) [rad]."""
@@ -116,7 +116,7 @@ class Heels:
         return rotations.from_rotation_vector(across * tilts[..., None])
 
 
-def _settling(tilts: Array, on_ball: NDArray[np.bool_], ground: GroundMotion) -> Array:
+def _fade_in_air(tilts: Array, on_ball: NDArray[np.bool_], ground: GroundMotion) -> Array:
     """Return tilts that fade in the air before and after feet stand, (frames, legs) [rad]."""
     over, standing = ground.repeat(tilts), ground.repeat(on_ball)
     frames = max(round(_SETTLING_S * ground.rate), 1)

@@ -138,7 +138,7 @@ class HeldLegs:
         missing = np.clip(missing, 0.0, most * self.rig.leg_length)
         return upper_envelope(missing, self.ground)
 
-    def swinging_as_long(self, pose: Pose, extensions: Array, lowest: Array) -> "HeldLegs":
+    def with_swing_lengths(self, pose: Pose, extensions: Array, lowest: Array) -> "HeldLegs":
         """Return the legs with their swinging ankles as far from the hip joints as in the source.
 
         Where they are `lowest`, (frames, legs) [m], their feet are on the ground.
@@ -146,7 +146,7 @@ class HeldLegs:
         away = self._away(pose)
         longer = extensions / np.maximum(np.linalg.norm(away, axis=-1), 1e-9) - 1.0
         standing, rate = self.ground.repeat(self.standing), self.ground.rate
-        longer *= self.ground.middle_cycle(_swinging(standing, rate))
+        longer *= self.ground.middle_cycle(_swing_share(standing, rate))
         ankles = self.ankles - longer[..., None] * away
         ankles[..., 1] = np.maximum(ankles[..., 1], np.minimum(self.ankles[..., 1], lowest))
         return replace(self, ankles=ankles)
@@ -177,7 +177,7 @@ def _smooth_mean(values: Array, standing: NDArray[np.bool_], rate: float) -> Arr
     return gaussian_smooth(mean, _SMOOTHING_S * rate)
 
 
-def _swinging(standing: NDArray[np.bool_], rate: float) -> Array:
+def _swing_share(standing: NDArray[np.bool_], rate: float) -> Array:
     """Return how far feet are from standing, (frames, legs): 0 there, 1 some time away."""
     frames = np.arange(len(standing))
     near = [

@@ -88,16 +88,16 @@ class MotionLoan:
         KeyError
             If the lender has no such clip.
         """
-        made = self._retargeted(_thinned(self.lender.clips[name]))
+        made = self._retarget(_thin(self.lender.clips[name]))
         return replace(made, poses=self._arms.hold(made.poses))
 
     @cached_property
     def _arms(self) -> ArmClearance:
         standing = self.lender.clips[IDLE_CLIP]
         first = replace(standing, poses=standing.poses[:1], loop=False)
-        return ArmClearance.of(self._target, self._retargeted(first).poses[0])
+        return ArmClearance.of(self._target, self._retarget(first).poses[0])
 
-    def _retargeted(self, clip: Clip) -> Clip:
+    def _retarget(self, clip: Clip) -> Clip:
         return retarget_between(clip, self._source, self._target)
 
     def gestures(self) -> GestureLibrary | None:
@@ -187,7 +187,7 @@ def _gestures_of(name: str) -> GestureLibrary:
         return GestureLibrary.load(file)
 
 
-def _thinned(clip: Clip) -> Clip:
+def _thin(clip: Clip) -> Clip:
     """Return a clip with every n-th frame, so that it begins and ends as before."""
     last = len(clip) - 1
     steps = [n for n in range(1, last + 1) if last % n == 0 and clip.rate / n >= MIN_RATE_HZ]

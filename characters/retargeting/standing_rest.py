@@ -43,7 +43,7 @@ def standing_skeleton(
     if rest == "zero":
         return skeleton
     if rest is not None:
-        return _resting_in(skeleton, anatomy, clip.poses[_stated_frame(rest, clip)])
+        return _rest_in(skeleton, anatomy, clip.poses[_stated_frame(rest, clip)])
     at_rest = skeleton.rest.globals(skeleton)[None]
     if uprightness(at_rest, anatomy)[0] >= _MIN_UPRIGHT:
         return skeleton
@@ -53,7 +53,7 @@ def standing_skeleton(
     if upright.max() < _MIN_UPRIGHT:
         return skeleton
     standing = upright - _RAISED_FOOT_COST * _foot_lift(placements, anatomy)
-    return _resting_in(skeleton, anatomy, clip.poses[int(frames[standing.argmax()])])
+    return _rest_in(skeleton, anatomy, clip.poses[int(frames[standing.argmax()])])
 
 
 def uprightness(placements: Array, anatomy: Anatomy) -> Array:
@@ -94,7 +94,7 @@ def _stated_frame(rest: str, clip: Clip) -> int:
     return int(number)
 
 
-def _resting_in(skeleton: Skeleton, anatomy: Anatomy, pose: Pose) -> Skeleton:
+def _rest_in(skeleton: Skeleton, anatomy: Anatomy, pose: Pose) -> Skeleton:
     """Return a skeleton that rests in a pose, turned ahead, above the origin."""
     bent = replace(skeleton, rest=pose)
     placements = pose.globals(skeleton)

@@ -107,7 +107,7 @@ class BusClient(Closeable, Generic[E]):
                 self.endpoint.receive(*self._incoming.popleft(), now)
             self.endpoint.tick(now)
             if self.bus.state == "connected":
-                self._queue(self.endpoint.outgoing(now))
+                self._queue(self.endpoint.outgoing_messages(now))
         self._publish()
 
     def close(self) -> None:

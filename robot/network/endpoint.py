@@ -103,7 +103,7 @@ class Endpoint:
     def tick(self, now: float) -> None:
         """Do what is due at time `now` [s]."""
 
-    def outgoing(self, now: float) -> list[Message]:
+    def outgoing_messages(self, now: float) -> list[Message]:
         """Return the messages to be published now, each once."""
         return []
 

@@ -106,7 +106,7 @@ class RobotNode(MemberEndpoint):
         elif self.arbiter.active is None and self._expressed is not None:
             self._express(NEUTRAL)
 
-    def outgoing(self, now: float) -> list[Message]:
+    def outgoing_messages(self, now: float) -> list[Message]:
         """Return the messages to be published now."""
         if self._epoch.replaced:
             return []

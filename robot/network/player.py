@@ -155,7 +155,7 @@ class Player(MemberEndpoint):
         if self._pending and behind and now - last_activity >= RESEND_AFTER_S:
             self._resend(now)
 
-    def outgoing(self, now: float) -> list[Message]:
+    def outgoing_messages(self, now: float) -> list[Message]:
         """Return the messages to be published now."""
         if self._epoch.replaced:
             return []

@@ -104,9 +104,9 @@ def reaction(character: Character) -> tuple[float, float]:
         begin, motion = 20.0 + number % 7, person.idle
         motion.feel(old)
         motion.sample(begin)
-        means = [np.mean([p.vector for p in database.suiting(each).postures], axis=0)
+        means = [np.mean([p.vector for p in database.for_emotion(each).postures], axis=0)
                  for each in (old, new)]  # fmt: skip
-        pause = max(p.duration for p in database.suiting(old).postures)
+        pause = max(p.duration for p in database.for_emotion(old).postures)
         motion.feel(new)
         for after in np.arange(0.0, 2.0 * pause, 0.1).tolist():
             at = database.kind.vectors(motion.sample(begin + after))

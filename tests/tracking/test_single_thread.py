@@ -3,7 +3,7 @@
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from cubeling.tracking.single_thread import _threaded, on_one_thread
+from cubeling.tracking.single_thread import _thread_controller, on_one_thread
 
 
 def blas_threads() -> set[int]:
@@ -24,9 +24,9 @@ class Solver:
 def two_threads():
     """A program that has imported numpy first, and chosen two threads."""
     with threadpool_limits(2, user_api="blas"):
-        _threaded.cache_clear()
+        _thread_controller.cache_clear()
         yield
-    _threaded.cache_clear()
+    _thread_controller.cache_clear()
 
 
 def test_one_thread_solves_and_the_others_come_back(two_threads) -> None:
@@ -40,7 +40,7 @@ def test_one_thread_solves_and_the_others_come_back(two_threads) -> None:
 
 def test_where_there_is_one_thread_nothing_is_limited() -> None:
     with threadpool_limits(1, user_api="blas"):
-        _threaded.cache_clear()
-        assert _threaded() is None
+        _thread_controller.cache_clear()
+        assert _thread_controller() is None
         assert Solver().threads() == {1}
-    _threaded.cache_clear()
+    _thread_controller.cache_clear()

@@ -59,7 +59,7 @@ _SHIFTS = np.arange(-1.0, 1.01, 0.1)
 _INTERPOLATION_VARIANCE = 1 / 6  # of a linear interpolation between pixels [px²]
 _INTERPOLATED_NOISE = 2 / 3  # share of the noise that such an interpolation leaves
 _ROUNDING_VARIANCE = 1 / 12  # of samples, which are whole grey values
-_OUTLIERS = 0.97  # quantile of the steps, above which they are cut off
+_STEP_QUANTILE = 0.97  # quantile of the steps, above which they are cut off
 _FLAT = 4  # samples at each end of a line
 _ALONG = np.linspace(0.12, 0.88, LINES_PER_SIDE)
 
@@ -127,7 +127,7 @@ class QualityMeter:
         pose = state.camera_from_cube
         if pose is None or not state.visible or self._moves(pose, state):
             return None
-        faces = list(self._planes.facing(pose, MIN_COSINE))
+        faces = list(self._planes.faces_towards(pose, MIN_COSINE))
         if not faces:
             return None
         corners = self._corners[faces] @ pose[:3, :3].T + pose[:3, 3]
@@ -187,7 +187,7 @@ def _measure(before: Floats, profiles: Floats) -> PictureQuality | None:
     blur = math.sqrt(max(float(np.median(blurs)) ** 2 - _INTERPOLATION_VARIANCE, 0.0))
     change = np.abs(profiles - before)[clear]
     change = np.delete(change, np.s_[_FLAT:-_FLAT], axis=-1)
-    mean = float(np.minimum(change, np.quantile(change, _OUTLIERS)).mean())
+    mean = float(np.minimum(change, np.quantile(change, _STEP_QUANTILE)).mean())
     variance = max(math.pi / 2 * mean**2 / 2 - _ROUNDING_VARIANCE, 0.0)
     ink, paper = _ink_and_paper(mean_light[clear], steps[best])
     haze = max(ink / paper - INK_SHARE, 0.0) / (1.0 - INK_SHARE)

@@ -67,7 +67,7 @@ class CalibrationModel:
 
     def residuals(self, views: Sequence[View]) -> list[Array]:
         """Return measured minus predicted position of each view's rows [px], each (N,)."""
-        rows, numbers = self._joined(views)
+        rows, numbers = self._join_views(views)
         pixels = camera_vector.project(self.camera, self._place(rows, numbers)[2])
         ends = np.cumsum([len(view.points) for view in views])
         return np.split(self._misses(rows, numbers, pixels), ends[:-1])
@@ -78,7 +78,7 @@ class CalibrationModel:
         These are by the camera (N, 9), by the pose of a row's plate (N, 6), and by the pose and
         bloom of its view (N, 7). Steps of poses are as in `se3.moved`.
         """
-        rows, numbers = self._joined(views)
+        rows, numbers = self._join_views(views)
         from_plate, from_target, in_camera = self._place(rows, numbers)
         pixels, by_point, by_camera = camera_vector.project_with_jacobian(self.camera, in_camera)
         by_point = np.einsum("ni,nij->nj", rows.normals, by_point)
@@ -89,7 +89,7 @@ class CalibrationModel:
         by_view = np.concatenate([*by_pose, rows.bloom[:, None]], axis=1)
         return self._misses(rows, numbers, pixels), by_camera, by_plate, by_view
 
-    def _joined(self, views: Sequence[View]) -> tuple[View, Indices]:
+    def _join_views(self, views: Sequence[View]) -> tuple[View, Indices]:
         """Return the rows of all views, and the number of each row's view, (N,)."""
         counts = [len(view.points) for view in views]
         return join_views(0.0, views), np.repeat(np.arange(len(views)), counts)

@@ -24,7 +24,7 @@ class FacePlanes:
         towards = -((self.normals @ rotation.T) * sights).sum(axis=1)
         return np.asarray(towards / np.sqrt((sights * sights).sum(axis=1)), np.float64)
 
-    def facing(self, camera_from_cube: Array, min_cosine: float) -> tuple[int, ...]:
+    def faces_towards(self, camera_from_cube: Array, min_cosine: float) -> tuple[int, ...]:
         """Return the indices of the faces whose cosine is greater than `min_cosine`."""
         return tuple(np.flatnonzero(self.cosines(camera_from_cube) > min_cosine).tolist())
 

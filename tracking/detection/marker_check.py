@@ -55,7 +55,7 @@ class CellReader:
 
     def read(self, patch: Patch, camera_from_cube: Array) -> CellReading:
         """Read all markers that face the camera."""
-        facing = list(self._faces.facing(camera_from_cube, MIN_FACING_COSINE))
+        facing = list(self._faces.faces_towards(camera_from_cube, MIN_FACING_COSINE))
         if not facing:
             return CellReading({})
         points = self._centres[facing].reshape(-1, 3)

@@ -105,7 +105,7 @@ class PartlyHiddenMarkerDetector:
         """Identify the marker in each quad: 4 × index of its face + rotation, or below 0."""
         places = quads.map(self._places)
         values = sample_grey(soft, places)
-        seen = self._uncovered(quads) & _inside(places, soft.shape)
+        seen = self._is_uncovered(quads) & _inside(places, soft.shape)
         white = _median(values[:, self._paper], seen[:, self._paper])[:, None]
         black = _median(values[:, self._border], seen[:, self._border])[:, None]
         contrast = white - black
@@ -132,7 +132,7 @@ class PartlyHiddenMarkerDetector:
         unknown = np.where(read > CLEAR_SHARE * cells, OTHER, UNREAD)
         return np.where(good, best, unknown), np.asarray(most / cells, np.float64)
 
-    def _uncovered(self, quads: Quads) -> Flags:
+    def _is_uncovered(self, quads: Quads) -> Flags:
         """Whether each place is away from corners whose sides are hidden, (N, places)."""
         corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float64)
         away = np.linalg.norm(self._places[:, None] - corners, axis=-1)

@@ -140,18 +140,18 @@ class CornerPoseSolver:
 
     def _consensus(self, start: Array, detected: _Detections) -> CornerPose | None:
         """Refine a proposal on all markers that agree with it, until these stay the same."""
-        agreeing = self._agreeing(start, detected, MAX_PROPOSED_ERROR)
+        agreeing = self._inliers(start, detected, MAX_PROPOSED_ERROR)
         for _ in range(3):
             if not agreeing:
                 return None
             solution = self._refine(start, agreeing)
             start = solution.camera_from_cube
-            before, agreeing = agreeing, self._agreeing(start, detected, MAX_REFINED_ERROR)
+            before, agreeing = agreeing, self._inliers(start, detected, MAX_REFINED_ERROR)
             if [id(seen) for seen in agreeing] == [id(seen) for seen in before]:
                 return solution
         return None
 
-    def _agreeing(self, pose: Array, detected: _Detections, tolerance: float) -> list[Observation]:
+    def _inliers(self, pose: Array, detected: _Detections, tolerance: float) -> list[Observation]:
         """Return the best marker of each face whose error is within a share of its side."""
         rotation, shift = pose[:3, :3], pose[:3, 3]
         in_camera = detected.points @ rotation.T + shift

@@ -78,7 +78,7 @@ def _smeared_patterns(dictionary: str, marker_ids: tuple[int, ...], count: int) 
     """
     cells = [marker_cells(dictionary, number) for number in marker_ids]
     smeared = [_smear(each, count) for each in cells]
-    turned = [_turned(each, turn, count) for each in smeared for turn in range(4)]
+    turned = [_turn(each, turn, count) for each in smeared for turn in range(4)]
     patterns = _normalize(np.stack(turned))
     patterns.flags.writeable = False
     return patterns
@@ -98,7 +98,7 @@ def _smear(black: Flags, count: int) -> Floats:
     return np.asarray(drawn, np.float32)
 
 
-def _turned(smeared: Floats, turn: int, count: int) -> Floats:
+def _turn(smeared: Floats, turn: int, count: int) -> Floats:
     """Turn a marker with every blur by quarters: a quarter turn also turns the blurs."""
     pictures = np.rot90(smeared.reshape(-1, count, count), turn, axes=(1, 2))
     if turn % 2:

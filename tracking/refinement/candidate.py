@@ -101,7 +101,7 @@ class Candidate:
         measurements = min(self.measurements, other.measurements)
         return bool(measurements * 2 * np.log(ratio) > MIN_LOG_LIKELIHOOD_RATIO)
 
-    def rivalled_by(self, other: "Candidate") -> bool:
+    def is_ambiguous_with(self, other: "Candidate") -> bool:
         """Whether another pose may be the right one as well."""
         return not self.same_pose(other) and not self.clearly_better_than(other)
 

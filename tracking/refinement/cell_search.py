@@ -144,7 +144,7 @@ class CellRun:
         """Whether the result is final."""
         return not self.step
 
-    def ended_if_known(self) -> "CellRun":
+    def end_if_known(self) -> "CellRun":
         """End it where so many faces determine the pose that more samples tell little."""
         if self.aligned and self.match and len(self.aligned.correlations) > MAX_FINE_FACES:
             return replace(self, match=replace(self.match, alignment=self.aligned), step="")
@@ -256,13 +256,13 @@ class CellSearch:
         # The markers that are drawn to weigh them need not be drawn again.
         aligned = replace(aligned, markers=match.alignment.markers)
         # With many faces the pose is known; others would cost more than they tell.
-        joins = MAX_FINE_FACES >= len(aligned.correlations) < len(_joining(match))
+        joins = MAX_FINE_FACES >= len(aligned.correlations) < len(_faces_to_add(match))
         if not (joins or match.proved):
             # More samples do not make a likeness a proof.
             return replace(run, match=replace(match, alignment=aligned), step="")
         return replace(
             run, aligned=aligned, match=match, step="join" if joins else "measure"
-        ).ended_if_known()
+        ).end_if_known()
 
     def _join(self, run: CellRun) -> CellRun:
         """Align all faces that are seen, where that explains more."""
@@ -270,11 +270,11 @@ class CellSearch:
         assert patch is not None
         assert aligned is not None
         assert match is not None
-        joint = self._aligner.realign(patch, aligned, _joining(match))
+        joint = self._aligner.realign(patch, aligned, _faces_to_add(match))
         again = self._weigh(patch, joint) if joint else None
         if joint and again and again.evidence.total > match.evidence.total:
             run = replace(run, aligned=joint, match=again)
-        return replace(run, step="measure").ended_if_known()
+        return replace(run, step="measure").end_if_known()
 
     def _measure(self, run: CellRun) -> CellRun:
         """Measure with more samples what was found coarsely."""
@@ -305,7 +305,7 @@ class CellSearch:
 
     def _in_view(self, camera_from_cube: Array) -> set[str]:
         """Return the names of the faces that may be compared at a pose, (4, 4)."""
-        facing = self._faces.facing(camera_from_cube, MIN_FACING_COSINE)
+        facing = self._faces.faces_towards(camera_from_cube, MIN_FACING_COSINE)
         return {self._faces.names[number] for number in facing}
 
     def _match(self, aligned: StillAlignment | None) -> CellMatch | None:
@@ -333,7 +333,7 @@ class CellSearch:
         return CellMatch(aligned, found, whole, proved, Evidence(blocks, aligned.evidence.bend))
 
 
-def _joining(match: CellMatch) -> set[str]:
+def _faces_to_add(match: CellMatch) -> set[str]:
     """Return the faces that are alike enough to join the alignment."""
     return {face for face, share in match.alignment.correlations.items() if share > MIN_JOINING}
 

@@ -97,7 +97,7 @@ class ControlLock:
         """The result."""
         mode = capture.get(control.mode)
         self._automatic = control.automatic if mode == control.manual else mode
-        if not self._supported():
+        if not self._is_supported():
             self._finish(False, "the camera has no such setting")
         elif value is not None:
             self._lock(value, "set to")
@@ -114,7 +114,7 @@ class ControlLock:
 
     def release(self) -> None:
         """Switch the control to automatic again."""
-        if self._supported() and self._capture.get(self._control.mode) == self._control.manual:
+        if self._is_supported() and self._capture.get(self._control.mode) == self._control.manual:
             self._capture.set(self._control.mode, self._automatic)
 
     def _lock_if_settled(self, image: Image | bytes) -> None:
@@ -150,7 +150,7 @@ class ControlLock:
             self._finish(True, f"{verb} {control.text(actual)}")
         return self.setting.applied
 
-    def _supported(self) -> bool:
+    def _is_supported(self) -> bool:
         # OpenCV returns −1 for a control that the driver does not have.
         control = self._control
         return min(self._capture.get(control.mode), self._capture.get(control.value)) >= 0

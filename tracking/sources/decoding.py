@@ -78,7 +78,7 @@ def bgr_of(frame: av.VideoFrame, pixel_shape: float = 1.0) -> Image:
         image = cv2.resize(image, size, interpolation=cv2.INTER_LINEAR_EXACT)
     pixels = np.asarray(image, np.uint8)
     matrix: Any = frame.side_data.get(DISPLAY_MATRIX)  # PyAV types it for motion vectors alone
-    return pixels if matrix is None else _displayed(pixels, bytes(matrix))
+    return pixels if matrix is None else _apply_display_matrix(pixels, bytes(matrix))
 
 
 def reason_of(error: av.FFmpegError) -> str:
@@ -92,7 +92,7 @@ def pixel_shape_of(stream: VideoStream) -> float:
     return float(ratio) if 1 / MAX_PIXEL_SHAPE <= ratio <= MAX_PIXEL_SHAPE else 1.0
 
 
-def _displayed(image: Image, matrix: bytes) -> Image:
+def _apply_display_matrix(image: Image, matrix: bytes) -> Image:
     """Turn and mirror an image by quarters, as its display matrix says (`libavutil/display.h`).
 
     A phone held upright stores its images rotated, one that films its owner perhaps mirrored.

@@ -152,7 +152,7 @@ class PrintCheck:
         if fault not in self._printed:
             cube = self._cube if fault is None else cube_with(self._cube, fault)
             self._printed[fault] = cube, CornerPoseSolver(cube, self._projection)
-        return _explained(*self._printed[fault], seen)
+        return _explaining_pose(*self._printed[fault], seen)
 
     def _measure_size(self, grey: Image, seen: Sequence[Observation]) -> None:
         """Measure the size of the markers on their faces, by all edges in two and more of these.
@@ -165,7 +165,7 @@ class PrintCheck:
         found = [
             (solved.error, share, solved.camera_from_cube)
             for share, sized in zip(SIZES, self._sized, strict=True)
-            if (solved := _explained(*sized, seen)) is not None
+            if (solved := _explaining_pose(*sized, seen)) is not None
         ]
         if not found:
             return
@@ -197,11 +197,11 @@ class PrintCheck:
 def cube_with(cube: CubeModel, fault: PrintFault) -> CubeModel:
     """Return the cube as it was printed with a fault that moves or turns markers."""
     if fault.kind == "turned":
-        faces = tuple(_rolled(face, 180) for face in cube.faces)
+        faces = tuple(_roll_face(face, 180) for face in cube.faces)
     elif fault.kind == "rolled":
         name = fault.faces[0]
         turn = fault.roll_deg - cube.face(name).roll_deg
-        faces = tuple(_rolled(face, turn) if face.name == name else face for face in cube.faces)
+        faces = tuple(_roll_face(face, turn) if face.name == name else face for face in cube.faces)
     elif fault.kind == "swapped":
         one, other = (cube.face(name) for name in fault.faces)
         ids = {one.name: other.marker_id, other.name: one.marker_id}
@@ -213,7 +213,7 @@ def cube_with(cube: CubeModel, fault: PrintFault) -> CubeModel:
     return replace(cube, faces=faces)
 
 
-def _rolled(face: Face, degrees: int) -> Face:
+def _roll_face(face: Face, degrees: int) -> Face:
     """Return a face with its marker turned clockwise seen from outside, by quarters."""
     corners = np.roll(face.corners, -(degrees // 90), axis=0)
     return replace(face, corners=corners, roll_deg=(face.roll_deg + degrees) % 360)
@@ -228,7 +228,7 @@ def with_markers(cube: CubeModel, share: float) -> CubeModel:
     return replace(cube, marker_size=cube.marker_size * share, faces=tuple(faces))
 
 
-def _explained(
+def _explaining_pose(
     cube: CubeModel, solver: CornerPoseSolver, seen: Sequence[Observation]
 ) -> CornerPose | None:
     """Return a pose of a cube that explains all markers, if there is one."""

@@ -141,7 +141,7 @@ def is_unambiguous(candidates: Sequence[Candidate]) -> bool:
     if not candidates:
         return False
     best, *others = candidates
-    return best.certain and not any(best.rivalled_by(other) for other in others)
+    return best.certain and not any(best.is_ambiguous_with(other) for other in others)
 
 
 def judge_detected(
@@ -182,7 +182,7 @@ def _choose(
         velocity = track.motion(best.camera_from_cube, best.covariance, now)[0]
         if np.linalg.norm(velocity[:3]) > MAX_LONE_FACE_SPEED:
             return best, "blurred"
-    others = [each for each in others if best.rivalled_by(each)]
+    others = [each for each in others if best.is_ambiguous_with(each)]
     if not others:
         return best, ""
     if prediction is not None and now - track.poses[-1].timestamp < MAX_CHOICE_AGE_S:

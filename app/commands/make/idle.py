@@ -135,7 +135,7 @@ def show(
     skeleton, anatomy, recordings = found
     database = IdleDatabase.of(recordings, PostureVectors.of(skeleton, anatomy))
     if mood:
-        database = database.suiting(Emotion(*WORD_PLACES[mood], mood))
+        database = database.for_emotion(Emotion(*WORD_PLACES[mood], mood))
     describe(console, found, database, mood)
     if output is None:
         return

@@ -72,7 +72,7 @@ class Intent:
 
 
 @dataclass(frozen=True)
-class Condition:
+class RuleCondition:
     """A condition that a file may name."""
 
     meaning: str
@@ -89,7 +89,7 @@ class Condition:
 
 
 @dataclass(frozen=True)
-class Action:
+class RuleAction:
     """Something that a file may let the character do."""
 
     meaning: str
@@ -107,44 +107,46 @@ def _top(moment: Moment, word: str) -> bool:
     return word in (face, moment.roles.get(face))
 
 
-CONDITIONS: dict[str, Condition] = {
-    "always": Condition("at every moment; with when, once at the beginning", lambda _, __: True),
-    "seen": Condition("the camera sees the cube", lambda now, _: now.controls.visible),
-    "placed": Condition("the cube is put down", lambda now, _: now.controls.placed),
-    "lifted": Condition("the cube is off the table", lambda now, _: now.controls.lifted),
-    "resting": Condition("the cube lies on the table", lambda now, _: now.controls.resting),
-    "shaken": Condition("the cube is shaken", lambda now, _: now.controls.shaken),
-    "gesture": Condition(
+CONDITIONS: dict[str, RuleCondition] = {
+    "always": RuleCondition(
+        "at every moment; with when, once at the beginning", lambda _, __: True
+    ),
+    "seen": RuleCondition("the camera sees the cube", lambda now, _: now.controls.visible),
+    "placed": RuleCondition("the cube is put down", lambda now, _: now.controls.placed),
+    "lifted": RuleCondition("the cube is off the table", lambda now, _: now.controls.lifted),
+    "resting": RuleCondition("the cube lies on the table", lambda now, _: now.controls.resting),
+    "shaken": RuleCondition("the cube is shaken", lambda now, _: now.controls.shaken),
+    "gesture": RuleCondition(
         "the hand makes this gesture with the cube",
         lambda now, name: name in now.controls.gestures,
         "NAME",
     ),
-    "top": Condition("the face of this role, or of this name, points up", _top, "ROLE"),
-    "right": Condition(
+    "top": RuleCondition("the face of this role, or of this name, points up", _top, "ROLE"),
+    "right": RuleCondition(
         "the cube was turned so far to the right since it was put down",
         lambda now, turns: now.controls.turns >= float(turns),
         "TURNS",
         "0.25",
     ),
-    "left": Condition(
+    "left": RuleCondition(
         "the cube was turned so far to the left since it was put down",
         lambda now, turns: now.controls.turns <= -float(turns),
         "TURNS",
         "0.25",
     ),
-    "near": Condition(
+    "near": RuleCondition(
         "the character is nearer to the cube than this",
         lambda now, cm: now.distance_cm < float(cm),
         "CM",
         "15",
     ),
-    "far": Condition(
+    "far": RuleCondition(
         "the character is farther from the cube than this",
         lambda now, cm: math.inf > now.distance_cm > float(cm),
         "CM",
         "30",
     ),
-    "cleared": Condition("the player presses C", lambda now, _: now.inputs.clear),
+    "cleared": RuleCondition("the player presses C", lambda now, _: now.inputs.clear),
 }
 """The conditions by name; a new one is a line here."""
 
@@ -154,24 +156,24 @@ MOMENTARY_CONDITIONS = ("placed", "shaken", "gesture", "cleared")
 NUMBER_ARGUMENTS = ("TURNS", "CM")
 """Arguments that are numbers."""
 
-ACTIONS: dict[str, Action] = {
-    "do": Action(
+ACTIONS: dict[str, RuleAction] = {
+    "do": RuleAction(
         "perform an action of the character: wave, cheer, nod, kiss, shout …",
         lambda intent, name: setattr(intent, "action", name),
     ),
-    "go": Action(
+    "go": RuleAction(
         "go to the cube, or back to where it stood first",
         lambda intent, place: setattr(intent, "go", place),
         DESTINATIONS,
     ),
-    "pace": Action(
+    "pace": RuleAction(
         "how it goes there", lambda intent, pace: setattr(intent, "pace", pace), tuple(PACES)
     ),
-    "feel": Action(
+    "feel": RuleAction(
         "let an event of the personality happen to the mood: shaken, reached, chased, ignored …",
         lambda intent, event: intent.events.append(event),
     ),
-    "hint": Action("what the player reads", lambda intent, text: setattr(intent, "hint", text)),
+    "hint": RuleAction("what the player reads", lambda intent, text: setattr(intent, "hint", text)),
 }
 """The actions by the key that names them; a new one is a line here."""
 

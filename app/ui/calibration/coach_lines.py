@@ -48,7 +48,7 @@ class CoachLines:
             self._said.clear()
         words, waited = words_of(advice.request, self._target), timestamp - self._printed_at
         if words in self._said and waited >= self.MISSING_AFTER_S:
-            words = f"Still missing: {_missing(coverage)}"
+            words = f"Still missing: {_missing_views(coverage)}"
             if "missing" in self._said:
                 return
             self._said.add("missing")
@@ -62,7 +62,7 @@ class CoachLines:
         self._console.print(f"[dim]{share}[/]  {words}", highlight=False)
 
 
-def _missing(coverage: ViewCoverage) -> str:
+def _missing_views(coverage: ViewCoverage) -> str:
     """Return the kinds of views that are missing, each with how many there are of how many."""
     return ", ".join(
         f"{kind} {coverage.counts[kind]} of {needed}"

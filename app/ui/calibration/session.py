@@ -111,7 +111,7 @@ class CalibrationSession:
             first = frame.timestamp if first is None else first
             result = self._collect(frame)
             # A recording is read to its end: it does not follow advice.
-            done = source.live and self.collector.coverage.complete and self._determined()
+            done = source.live and self.collector.coverage.complete and self._is_determined()
             request = "done" if done else self._advice(result, frame.timestamp)
             collector = self.collector
             advice = Advice(
@@ -178,7 +178,7 @@ class CalibrationSession:
     def _kinds_of(self, result: ViewResult) -> set[str]:
         return set() if result.sample is None else self.collector.coverage.kinds_of(result.sample)
 
-    def _determined(self) -> bool:
+    def _is_determined(self) -> bool:
         """Return whether the views determine the camera well; if not, ask for more."""
         try:
             good = calibrate(self.collector.views, self.finder.target(self._size)).good

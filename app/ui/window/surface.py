@@ -110,7 +110,7 @@ class WindowSurface:
         ):
             glfw.window_hint(hint, value)
         self._chosen_size = shown_size
-        self._first_size = shown_size or _fitting(size)
+        self._first_size = shown_size or _fitting_size(size)
         self._window = glfw.create_window(*self._first_size, title, None, None)
         if not self._window:
             glfw.terminate()
@@ -329,7 +329,7 @@ class WindowSurface:
         self._error = text.decode(errors="replace") if isinstance(text, bytes) else text
 
 
-def _fitting(size: tuple[int, int]) -> tuple[int, int]:
+def _fitting_size(size: tuple[int, int]) -> tuple[int, int]:
     """Return the size of a window for pictures of `size` that fits on the desktop.
 
     On a fine screen it is larger where the system counts in pixels.

@@ -31,7 +31,7 @@ def _of_hand(value: Callable[[HandMask], Cell]) -> Callable[[Appearance], Cell]:
     return lambda seen: None if seen.hand is None else value(seen.hand)
 
 
-def _covered(hand: HandMask) -> float:
+def _area(hand: HandMask) -> float:
     return float(hand.share.sum()) / 255.0 * hand.scale**2
 
 
@@ -159,7 +159,7 @@ EXPORT_TABLES = (
                    _of_hand(lambda hand: hand.share.shape[1] * hand.scale)),
             Column("hand_height_px", "px", "Its height",
                    _of_hand(lambda hand: hand.share.shape[0] * hand.scale)),
-            Column("hand_area_px", "px²", "What the hand covers near the cube", _of_hand(_covered)),
+            Column("hand_area_px", "px²", "What the hand covers near the cube", _of_hand(_area)),
             *vector(
                 ("behind_x_m", "behind_y_m", "behind_z_m"),
                 "m",

@@ -96,7 +96,7 @@ def _history(session: SessionFile) -> MoodHistory:
     path, info = session.path, session.info
     frames: list[dict[str, Any]] = []
     frame: dict[str, Any] = {}
-    for topic, _, message in session.decoded(
+    for topic, _, message in session.decode_messages(
         {topic: MESSAGE_TYPES[topic] for topic in MOOD_TOPICS}
     ):
         frame[topic] = message

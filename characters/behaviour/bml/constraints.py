@@ -6,7 +6,7 @@ from functools import partial
 
 from cubeling.characters.behaviour.bml.document import Behaviour, Block, Constraint, SyncReference
 from cubeling.characters.behaviour.bml.timing import Timing
-from cubeling.characters.errors import listed
+from cubeling.characters.errors import name_list
 
 Moment = tuple[str, int]
 """A sync point: a behaviour's id, and the index in its `Timing.syncs`."""
@@ -131,7 +131,7 @@ class Resolver:
         if timing is None:
             raise Unmet(owner, not_performed(reference))
         if reference.sync not in timing.index:
-            points = listed(timing.syncs)
+            points = name_list(timing.syncs)
             raise Unmet(owner, f"{reference} is no sync point of it; it has {points}")
         return (reference.behaviour, timing.index[reference.sync]), reference.offset
 

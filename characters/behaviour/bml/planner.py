@@ -16,7 +16,7 @@ from cubeling.characters.behaviour.bml.problem import TimingProblem, check, sequ
 from cubeling.characters.behaviour.bml.shifts import Shifts
 from cubeling.characters.behaviour.bml.spans import TOLERANCE, fits, stretch
 
-LATENESS = 0.1
+MAX_LATENESS_S = 0.1
 """A sync point that should have been so many seconds ago may be now: the standard's tolerance."""
 
 
@@ -257,7 +257,7 @@ class _Planner:
     def _in_time(self, anchor: _Anchor, time: float) -> float:
         """Return a time that is not in the past, if it is only a little."""
         start = self._problem.start
-        if anchor.moment is None and start - LATENESS <= time < start:
+        if anchor.moment is None and start - MAX_LATENESS_S <= time < start:
             time = start
         if not self._problem.strict and self._cluster(anchor).grounded:
             time = max(time, self._problem.now)

@@ -80,7 +80,9 @@ class Realizer:
 
     def active(self, now: float) -> tuple[Scheduled, ...]:
         """Return the behaviours that are going on, in the order in which their blocks came."""
-        return tuple(s for realization in self._running() for s in realization.behaviours(now))
+        return tuple(
+            s for realization in self._running_realizations() for s in realization.behaviours(now)
+        )
 
     @property
     def scheduled(self) -> tuple[Scheduled, ...]:
@@ -123,7 +125,7 @@ class Realizer:
         """
         moved = {move[0] for move in moves if self._move(*move)}
         changed = set[str]()
-        for other in self._running():
+        for other in self._running_realizations():
             if other.block.id in moved or other.refers_to(changed):
                 changed.add(other.block.id)
                 other.replan(self._now, self._external)
@@ -352,15 +354,15 @@ class Realizer:
 
     # Between blocks
 
-    def _running(self) -> list[Realization]:
+    def _running_realizations(self) -> list[Realization]:
         return [p for p in self._realizations.values() if p.state == "running"]
 
     def _reorder(self) -> None:
-        for realization in self._running():
+        for realization in self._running_realizations():
             realization.reorder()
 
     def _others(self, realization: Realization) -> list[BehaviourTrack]:
-        others = [other for other in self._running() if other is not realization]
+        others = [other for other in self._running_realizations() if other is not realization]
         return [track for other in others for track in other.tracks.values()]
 
     def _external(self, reference: SyncReference) -> float | None:

@@ -131,7 +131,7 @@ class Scheduler:
         self._behaviours = {behaviour.id: behaviour for behaviour in block.behaviours}
         self._constraints = {constraint.id: constraint for constraint in block.constraints}
         self._parts: dict[str, Behaviour | Constraint] = {**self._behaviours, **self._constraints}
-        self._tied = _tied(block)
+        self._ties = _ties(block)
         self._timings: dict[str, Timing] = {}
         self._failures: list[Failure] = []
         unable: list[Failure] = []
@@ -206,7 +206,7 @@ class Scheduler:
             self._failures.append(failure)
             self._constraints.pop(failure.id, None)
             self._timings.pop(failure.id, None)
-            for name, reference in self._tied.get(failure.id, ()):
+            for name, reference in self._ties.get(failure.id, ()):
                 other = self._constraints.get(name)
                 if other is not None and not other.required:
                     del self._constraints[name], self._parts[name]
@@ -232,7 +232,7 @@ class Scheduler:
         return True
 
 
-def _tied(block: Block) -> Mapping[str, list[tuple[str, SyncReference]]]:
+def _ties(block: Block) -> Mapping[str, list[tuple[str, SyncReference]]]:
     """Return ids of behaviours and constraints by the behaviour that they refer to, and how."""
     tied: dict[str, list[tuple[str, SyncReference]]] = defaultdict(list)
     for behaviour in block.behaviours:

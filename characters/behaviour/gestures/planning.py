@@ -60,7 +60,7 @@ FLIP_RAD = math.radians(60.0)
 CHARACTERS = 8
 """Characters whose bodies are kept for their next animator."""
 
-PLANS = 64
+KEPT_PLANS = 64
 """Plans that are kept for when a gesture comes again."""
 
 
@@ -106,7 +106,7 @@ class GestureRealizer(GestureBody):
 _KEPT: deque[GestureRealizer] = deque(maxlen=CHARACTERS)
 
 
-@lru_cache(maxsize=PLANS)
+@lru_cache(maxsize=KEPT_PLANS)
 def _planning(
     gesture_body: GestureRealizer,
     gesture: SymbolicGesture,

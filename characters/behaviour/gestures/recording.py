@@ -29,7 +29,7 @@ RATE_HZ = 50.0
 TOLERANCE = 0.08
 """How far a palm may be from the polyline of its way, in parts of an arm's length."""
 
-MOVES = 0.15
+MIN_HAND_TRAVEL = 0.15
 """A hand that stays within this takes no part, in parts of an arm's length."""
 
 HANGING = -0.45
@@ -47,7 +47,7 @@ MIN_BODY_DEG = 4.0
 SHORTEST_S = 0.1
 """Shortest preparation and retraction [s]."""
 
-SNAP = 0.04
+SNAP_DISTANCE = 0.04
 """Offsets from the centre of a cell that are left out, in parts of an arm's length."""
 
 
@@ -73,7 +73,7 @@ class RecordedHand:
     @property
     def moves(self) -> bool:
         """Whether it takes part."""
-        return float(np.ptp(self.places, axis=0).max()) > MOVES
+        return float(np.ptp(self.places, axis=0).max()) > MIN_HAND_TRAVEL
 
     def stroke(self) -> list[int]:
         """Return the frames of its keys, those of the stroke alone."""
@@ -184,7 +184,7 @@ def _keys(
 
 def _snap(place: Place) -> Place:
     """Return a place, in the middle of its cell if it is near it."""
-    offset = tuple(round(value, 3) if abs(value) > SNAP else 0.0 for value in place.offset)
+    offset = tuple(round(value, 3) if abs(value) > SNAP_DISTANCE else 0.0 for value in place.offset)
     return replace(place, offset=(offset[0], offset[1], offset[2]))
 
 

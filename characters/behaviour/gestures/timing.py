@@ -106,7 +106,7 @@ class PhaseTimes:
             relax = times.stroke_end + ASSUMED_HOLD_S
             end = None
         asked = (times.start, times.ready, times.stroke_start, times.stroke, times.stroke_end)
-        ordered = _ascending((*asked, relax, relax + retraction if end is None else end))
+        ordered = _in_order((*asked, relax, relax + retraction if end is None else end))
         self.knots = ordered
         """Start, ready, stroke start, stroke, stroke end, relax and end [s], ascending."""
         self.start, self.ready, self.stroke_start, self.stroke = ordered[:4]
@@ -135,7 +135,7 @@ class PhaseTimes:
         return interpolate(now, self.knots, own.knots)
 
 
-def _ascending(times: Iterable[float]) -> list[float]:
+def _in_order(times: Iterable[float]) -> list[float]:
     """Return times in order: what is not known, has no length or is too early gets the least."""
     ascending: list[float] = []
     for time in times:

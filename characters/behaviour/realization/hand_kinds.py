@@ -61,7 +61,7 @@ class GestureKind:
         meaning = meaning_of(behaviour, who)
         match meaning.kind:
             case "head":
-                return HEAD.timing(_called(behaviour, meaning), who)
+                return HEAD.timing(_with_lexeme(behaviour, meaning), who)
             case "clip":
                 joining, going = CLIP_FADES_S
                 middle = max(who.character.clips[meaning.name].duration - joining - going, 0.2) / 2
@@ -90,7 +90,7 @@ class GestureKind:
         meaning = meaning_of(behaviour, who)
         match meaning.kind:
             case "head":
-                called = replace(scheduled, behaviour=_called(behaviour, meaning))
+                called = replace(scheduled, behaviour=_with_lexeme(behaviour, meaning))
                 HEAD.realize(called, who, frame)
             case "clip":
                 frame.clips.append(ClipIntent(key, meaning.name, stroke_times_of(scheduled)))
@@ -172,7 +172,7 @@ def _can(meaning: Meaning, who: RealizationContext) -> bool:
     return False
 
 
-def _called(behaviour: Behaviour, meaning: Meaning) -> Behaviour:
+def _with_lexeme(behaviour: Behaviour, meaning: Meaning) -> Behaviour:
     return replace(behaviour, attributes={**behaviour.attributes, "lexeme": meaning.name})
 
 

@@ -38,7 +38,7 @@ MIN_MOVED_RAD = np.deg2rad(3.0)
 MIN_MOVED_SHARE = 0.1
 """Nor one that it turns less than this share of what it turns most."""
 
-SAMPLES = 24
+EXAMINED_MOMENTS = 24
 """Moments at which a clip is looked at."""
 
 
@@ -115,7 +115,7 @@ def clip_joints(character: Character, name: str) -> NDArray[np.intp]:
         trunk = {anatomy.joint(each) for each in ("spine", "chest", "upperChest")}
         return np.array([joint for joint in joints if joint not in above | trunk], np.intp)
     clip = character.clips[name]
-    times = np.linspace(0.0, clip.duration, SAMPLES)
+    times = np.linspace(0.0, clip.duration, EXAMINED_MOMENTS)
     turns = np.stack([clip.sample(time).rotations for time in times.tolist()])
     apart = rotations.to_rotation_vector(rotations.multiply(rotations.conjugate(turns[0]), turns))
     moved = np.linalg.norm(apart, axis=-1).max(axis=0)

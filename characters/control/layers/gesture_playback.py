@@ -97,10 +97,10 @@ class GesturePlayback:
             rest = (self._settled - now) / (self._settled - self._since)
             return moment + self._ahead * rest
         if self._ahead > 0.0:
-            moment = max(moment, self._waiting(now))
+            moment = max(moment, self._time_of_wait(now))
         return moment
 
-    def _waiting(self, now: float) -> float:
+    def _time_of_wait(self, now: float) -> float:
         """Return where it comes to a stop, smoothly, to wait for its new times."""
         start = self._times.at(self._since, self._own) + self._ahead
         if self._coast <= 0.0:

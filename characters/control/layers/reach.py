@@ -43,10 +43,10 @@ MAX_TARGET_SPEED = 3.0
 CLEARANCE = 0.012
 """Distance of a palm from the body's surface ÷ the body's height."""
 
-NEARER = 0.12
+HAND_CHANGE_MARGIN = 0.12
 """By how much the other hand must be nearer to take over, in arm lengths."""
 
-APART = 0.12
+HAND_OFFSET = 0.12
 """Distance of each of two hands from the middle of what both reach for, in arm lengths."""
 
 STYLE_LAG_S = 0.15
@@ -142,7 +142,7 @@ class NearestHand:
         def cost(side: str) -> float:
             arm = self.body.arms[side]
             far = length(subtract(place, self.shoulders[side])) / (arm.upper + arm.fore)
-            kept = NEARER if self._chosen.get(intent.key) == side else 0.0
+            kept = HAND_CHANGE_MARGIN if self._chosen.get(intent.key) == side else 0.0
             return far - kept + (math.inf if side in taken and len(self.shoulders) > 1 else 0.0)
 
         self._chosen[intent.key] = min(self.shoulders, key=cost)
@@ -228,7 +228,7 @@ class ReachLayer:
                 shift = 0.0
                 if intent.hand == "both" and len(sides) > 1:
                     arm = self._body.arms[side]
-                    shift = arm.sign * APART * (arm.upper + arm.fore)
+                    shift = arm.sign * HAND_OFFSET * (arm.upper + arm.fore)
                 yield side, (intent, self._keep_out(side, add(place, (shift, 0.0, 0.0))))
 
     def _place(self, intent: ReachIntent, context: FrameContext) -> Vector:

@@ -102,7 +102,7 @@ class MouthTrack:
 
     def __init__(self, utterance: Utterance, settings: Coarticulation = DEFAULT) -> None:
         found = viseme_set(settings.visemes)
-        self._phones = _with_contacts(list(_sounding(utterance, found)))
+        self._phones = _with_contacts(list(_timed_visemes(utterance, found)))
         self._settings = settings
         shapes = [phone.sounding.viseme.shape for phone in self._phones]
         self._shapes = np.array([[mix.get(name, 0.0) for name in MOUTH_SHAPES] for mix in shapes])
@@ -232,7 +232,7 @@ def _with_contacts(phones: list[_TimedViseme]) -> list[_TimedViseme]:
     return phones
 
 
-def _sounding(utterance: Utterance, found: VisemeSet) -> Iterator[_TimedViseme]:
+def _timed_visemes(utterance: Utterance, found: VisemeSet) -> Iterator[_TimedViseme]:
     """Yield the visemes of every phone, with a pause at both ends.
 
     A phone without a known letter belongs to the one before it.

@@ -143,7 +143,7 @@ def orient_hand(
     back = conjugate(arm.rest_turns[1])
     swivel = natural_swivel(arm, shoulder, hand.place, chest)
     natural = bend(arm, hand.effector, shoulder, hand.place, chest, swivel)
-    turn = _facing(hand, natural.hand)
+    turn = _facing_rotation(hand, natural.hand)
     place = subtract(hand.place, rotate(multiply(turn, back), offset))
     bent = bend(arm, wrist, shoulder, place, chest, swivel)
     wanted = multiply(turn, conjugate(bent.hand))
@@ -210,7 +210,7 @@ def natural_hand(arm: Arm, bent: BentArm) -> Quaternion:
     return multiply(multiply(bent.lower, conjugate(arm.rest_turns[0])), arm.rest_turns[1])
 
 
-def _facing(hand: HandOnItsWay, turn: Quaternion) -> Quaternion:
+def _facing_rotation(hand: HandOnItsWay, turn: Quaternion) -> Quaternion:
     """Return the rotation of a hand that faces where it is asked to; `turn` as it comes."""
     arm, target = hand.arm, hand.target
     along, _, palm = (to_vector(axis) for axis in arm.hand.axes)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.ik.reaching.arms import Arm, to_quaternion, turns_of
-from cubeling.characters.ik.reaching.stance import Stance
+from cubeling.characters.ik.reaching.stance import StandingLegs
 from cubeling.characters.ik.reaching.torso import FOUR_LEGS, PlacedTorso
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.joint_chains import chains_to_root
@@ -50,7 +50,7 @@ class UpperBodyKinematics:
         ends = skeleton.with_ancestors(arm.joints[3] for arm in arms.values())
         order = [*roots, *(joint for joint in ends if joint not in roots)]
         self._counts = {"upper": len(roots), "arms": len(order)}
-        self.stance = Stance.of(skeleton, anatomy)
+        self.stance = StandingLegs.of(skeleton, anatomy)
         """Its pelvis, legs and neck."""
         below = skeleton.with_ancestors(self.stance.joints)
         order += [joint for joint in below if joint not in order]

@@ -42,7 +42,7 @@ class Pull(NamedTuple):
     """0 not at all … 1."""
 
 
-def straining(pull: Pull, far: float, power: float) -> tuple[float, float]:
+def arm_strain(pull: Pull, far: float, power: float) -> tuple[float, float]:
     """Return how far an elbow is from its ease, and how that changes with the distance [1/m]."""
     upper, fore = pull.arm.upper, pull.fore
     ease = EASY_FLEXION_RAD * (1.0 + 0.3 * power)
@@ -66,7 +66,7 @@ def _span(upper: float, fore: float, flexion: float) -> float:
     return math.sqrt(upper * upper + fore * fore + 2.0 * upper * fore * math.cos(flexion))
 
 
-def standing(extension: float, own: float) -> tuple[float, float]:
+def leg_strain(extension: float, own: float) -> tuple[float, float]:
     """Return how far a leg is from its ease, and how that changes with its extension."""
     bend, held = (math.sqrt(max(1.0 - each, 0.0) + 0.004) for each in (extension, own))
     # Knee and leg are springs of one length: together they are one.

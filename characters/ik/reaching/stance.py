@@ -11,7 +11,7 @@ _LEG = ("UpperLeg", "LowerLeg", "Foot")
 
 
 @dataclass(frozen=True)
-class Stance:
+class StandingLegs:
     """The joints below and above the trunk of a body on two legs; none of another body."""
 
     pelvis: int = -1

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cubeling.characters.ik.reaching.arms import cone_axis, scale_vector
-from cubeling.characters.ik.reaching.limb_springs import Pull, standing, stiffen, straining
+from cubeling.characters.ik.reaching.limb_springs import Pull, arm_strain, leg_strain, stiffen
 from cubeling.characters.ik.reaching.torso import PlacedTorso
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
@@ -179,7 +179,7 @@ def settle(
     state = [0.0] * len(energy.springs) if start is None else energy.state_of(start)
     for _ in range(steps):
         state = energy.step(state)
-    return energy.settled(energy.planted(state))
+    return energy.as_settled(energy.plant(state))
 
 
 Row = list[float]
@@ -246,7 +246,7 @@ class _Energy:
         state = [value for part in start[:3] for value in rotate(back, part)]
         return state + [v for side in self.sides for v in rotate(back, start.collar(side))]
 
-    def settled(self, state: Sequence[float]) -> Settled:
+    def as_settled(self, state: Sequence[float]) -> Settled:
         """Return the numbers that are solved for as a state."""
         parts = [
             rotate(self.facing, (state[at], state[at + 1], state[at + 2]))
@@ -256,7 +256,7 @@ class _Energy:
 
     def step(self, state: list[float]) -> list[float]:
         """Return the state after one Gauss-Newton step."""
-        state = self.planted(state)
+        state = self.plant(state)
         stiff, slope = [], []
         for value, spring, (low, high) in zip(state, self.springs, self.ranges, strict=True):
             square = spring * spring
@@ -285,7 +285,7 @@ class _Energy:
         size = RELAXATION / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
         return [value - size * more for value, more in zip(state, change, strict=True)]
 
-    def planted(self, state: list[float]) -> list[float]:
+    def plant(self, state: list[float]) -> list[float]:
         """Return a state whose pelvis is as low as its legs need, and no lower than they fold."""
         if not self.legs:
             return state
@@ -339,7 +339,7 @@ class _Energy:
             shoulder = add(centre, rotate(whole, subtract(place, old)))
             aim = subtract(pull.place, shoulder)
             far = max(length(aim), 1e-9)
-            miss, slope = straining(pull, far, self.power)
+            miss, slope = arm_strain(pull, far, self.power)
             if slope:
                 way = scale_vector(aim, -slope / far)
                 row = add_place(miss, way, shoulder, way)
@@ -358,7 +358,7 @@ class _Energy:
             hip = add(centre, rotate(whole, subtract(leg.hip, old)))
             aim = subtract(leg.ankle, hip)
             far = max(length(aim), 1e-9)
-            miss, slope = standing(far / leg.length, own)
+            miss, slope = leg_strain(far / leg.length, own)
             way = scale_vector(aim, -slope / (far * leg.length))
             row = [*way, *cross(subtract(hip, centre), way), 0.0, 0.0, 0.0, *none]
             self.rows.append(row)

@@ -20,7 +20,7 @@ Rule = Callable[[Array, Array], Array]
 DAMPING = 0.03
 """λ² over the squared error."""
 
-FLOOR = 1e-6
+MIN_DAMPING_SHARE = 1e-6
 """Least λ² over the trace of J Jᵀ, which keeps it invertible."""
 
 
@@ -44,7 +44,7 @@ class Damped:
     damping: float = DAMPING
     """λ² over the squared error."""
 
-    floor: float = FLOOR
+    floor: float = MIN_DAMPING_SHARE
     """Least λ² over the trace of J Jᵀ."""
 
     def __call__(self, gram: Array, error: Array) -> Array:
@@ -57,7 +57,7 @@ def damped_pull(gram: Sequence[float], error: Vector) -> Vector:
     """Return what `Damped()` does for one chain, in scalars."""
     xx, yy, zz, xy, xz, yz = gram
     p, q, r = error
-    damping = DAMPING * (p * p + q * q + r * r) + FLOOR * (xx + yy + zz)
+    damping = DAMPING * (p * p + q * q + r * r) + MIN_DAMPING_SHARE * (xx + yy + zz)
     xx, yy, zz = xx + damping, yy + damping, zz + damping
     a, b, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
     d, e, f = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy

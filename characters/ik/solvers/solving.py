@@ -176,7 +176,7 @@ def _nudge(task: Task) -> Task:
     if task.bounds is not None:
         low, high = task.bounds.low, task.bounds.high
         bent = np.clip(np.where(bent > high, angles - nudge, bent), low, high)
-    return task.starting_from(np.where(on_line, columns.from_euler(bent), task.start))
+    return task.with_start(np.where(on_line, columns.from_euler(bent), task.start))
 
 
 def _made_sure(
@@ -194,7 +194,7 @@ def _made_sure(
             break
         part = task.select(np.repeat(left, copies))
         begin = turns[..., left] if copies == 1 else _random_start(part, random)
-        again, ends, used = _POLISH(part.starting_from(begin))
+        again, ends, used = _POLISH(part.with_start(begin))
         now = columns.length(ends[-1] - part.targets).reshape(-1, copies)
         best = _nearest_solved(part, again, now)
         better = now[np.arange(len(left)), best] < errors[left]

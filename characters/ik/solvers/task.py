@@ -119,7 +119,7 @@ class Task:
             limiting or "propagate",
         )
 
-    def starting_from(self, turns: Array) -> "Task":
+    def with_start(self, turns: Array) -> "Task":
         """Return the task with other rotations to start from."""
         frames, points = self.frames(turns)
         return replace(self, start=turns, frames_at_start=frames, points_at_start=points)

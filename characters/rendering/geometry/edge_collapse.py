@@ -110,11 +110,11 @@ class _Mesh:
         limits = np.minimum(tolerance.distance, tolerance.thickness_share * self._thickness[froms])
         error[~(error <= limits**2)] = np.inf
         chosen = self._pick(froms, tos, error)
-        chosen = chosen[self._linked(pairs, froms, tos, np.bincount(pair, uses), chosen)]
+        chosen = chosen[self._keeps_topology(pairs, froms, tos, np.bincount(pair, uses), chosen)]
         is_chosen = np.zeros(len(pairs), bool)
         is_chosen[chosen] = True
         moving = is_chosen[pair]
-        moving[moving] = ~self._turned(sources[moving], targets[moving])
+        moving[moving] = ~self._flips_triangle(sources[moving], targets[moving])
         target = np.arange(count)
         target[sources[moving]] = targets[moving]
         np.add.at(self._quadrics, targets[moving], self._quadrics[sources[moving]])
@@ -171,7 +171,7 @@ class _Mesh:
             rank[tos[done[froms]]] = np.inf
         return np.concatenate(picked)
 
-    def _linked(
+    def _keeps_topology(
         self, pairs: Indices, froms: Indices, tos: Indices, uses: NDArray[Any], chosen: Indices
     ) -> NDArray[np.bool_]:
         """Return whether both ends of an edge share no neighbours but those of its triangles."""
@@ -185,7 +185,7 @@ class _Mesh:
         shared = np.bincount(each, pairs[found] == keys, minlength=len(chosen))
         return np.asarray(shared == uses[chosen])
 
-    def _turned(self, sources: Indices, targets: Indices) -> NDArray[np.bool_]:
+    def _flips_triangle(self, sources: Indices, targets: Indices) -> NDArray[np.bool_]:
         """Return which moves turn a triangle too far."""
         target = np.arange(len(self._place))
         target[sources] = targets

@@ -31,7 +31,7 @@ from cubeling.characters.retargeting.locomotion.grading import (
     GaitReport,
     angular_of,
 )
-from cubeling.characters.retargeting.locomotion.looking_ahead import facing_ahead
+from cubeling.characters.retargeting.locomotion.looking_ahead import face_ahead
 from cubeling.characters.retargeting.locomotion.recorded_gait import (
     MAX_RATE_HZ,
     extract_gait,
@@ -185,7 +185,7 @@ def _idle_from(recording: Recording, character: Character, walker: Character) ->
     cut = LoopCut(0, len(clip) - 1, 0.0) if clip.loop else find_pause(clip, rig)
     loop = close_loop(clip, cut)
     loop = resample_loop(loop, MAX_RATE_HZ) if loop.rate > MAX_RATE_HZ else loop
-    return facing_ahead(replace(loop, name="idle", root_motion=True), rig)
+    return face_ahead(replace(loop, name="idle", root_motion=True), rig)
 
 
 def _static_idle(walk: Clip, rig: Rig) -> Clip:

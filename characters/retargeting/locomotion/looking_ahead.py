@@ -21,7 +21,7 @@ _MAX_DOWNWARD = np.radians(5.0)  # that the head looks down in most of a clip
 _PARTS = ("neck", "head")
 
 
-def looking_ahead(clip: Clip, rig: Rig) -> Clip:
+def look_ahead(clip: Clip, rig: Rig) -> Clip:
     """Return a clip with the head raised if it is bent in most of it; it still nods and turns."""
     joints = [joint for part in _PARTS if (joint := rig.anatomy.joint(part)) is not None]
     if rig.anatomy.joint("head") is None:
@@ -40,7 +40,7 @@ def looking_ahead(clip: Clip, rig: Rig) -> Clip:
     return replace(clip, poses=with_turns_from_rest(clip.poses, rig, joints, turns))
 
 
-def facing_ahead(clip: Clip, rig: Rig) -> Clip:
+def face_ahead(clip: Clip, rig: Rig) -> Clip:
     """Return a clip in place whose body faces +z and stands over the root, on average."""
     poses = clip.in_place
     yaw = facing_error(poses, rig)

@@ -22,7 +22,7 @@ from cubeling.characters.retargeting.locomotion.cycle import (
 )
 from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
 from cubeling.characters.retargeting.locomotion.grading import refuse_lying, refuse_other_motion
-from cubeling.characters.retargeting.locomotion.looking_ahead import looking_ahead
+from cubeling.characters.retargeting.locomotion.looking_ahead import look_ahead
 from cubeling.characters.retargeting.measures import knee_quantiles
 from cubeling.characters.retargeting.recording import Recording
 from cubeling.characters.retargeting.retarget import retarget
@@ -125,7 +125,7 @@ def on_character(
     if not _are_same(recording.skeleton, character.skeleton):
         args = (recording.skeleton, recording.anatomy, walker.skeleton, walker.anatomy)
         clip = retarget(recording.clip, *args, meshes=walker.meshes)
-        return looking_ahead(clip, target), contacts
+        return look_ahead(clip, target), contacts
     if has_root_joint(character.skeleton, character.anatomy):
         return replace(recording.clip, root_motion=True), contacts
     return clip_with_root(recording.clip, character.skeleton, character.anatomy), contacts

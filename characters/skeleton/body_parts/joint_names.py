@@ -39,7 +39,7 @@ from cubeling.characters.skeleton.body_parts.joint_words import (
 
 _NAME_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
 _VERTEBRA = re.compile(r"(?i)v?([ltsc])\d+")  # "L5" and "vl5" are lumbar, "vc7" is cervical
-_GUESS = 0.7  # of a name with unknown words, relative to one of known words
+_UNKNOWN_WORD_FIT = 0.7  # of a name with unknown words, relative to one of known words
 _COMMON_SHARE = 0.8  # of the joints: a word in more names than that says nothing
 _MIN_COMMON = 6  # joints; of fewer, a word may be in all names and still say something
 
@@ -194,7 +194,7 @@ def _read(words: tuple[str, ...], common: frozenset[str], corners: bool) -> Join
         unknown = [word for word in unknown if word not in FRONT_WORDS | HIND_WORDS]
     certain = all(word in KNOWN_WORDS or word in "uf" for word in unknown)
     side = sides[0] if sides else ""
-    return JointName(part, side, front, hind, auxiliary, end, 1.0 if certain else _GUESS)
+    return JointName(part, side, front, hind, auxiliary, end, 1.0 if certain else _UNKNOWN_WORD_FIT)
 
 
 def _part_of(words: Sequence[str]) -> tuple[str, list[str]]:

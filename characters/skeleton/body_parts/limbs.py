@@ -20,7 +20,7 @@ FORELEG_ROLES = ("Shoulder", *LEG_ROLES)
 _END_FIT = 0.05  # of the end of the last bone that has a name, to a foot or hand
 _UNNAMED_FIT = 0.1  # of a joint whose name says nothing, to any part of a limb
 _SURE_FIT = 0.9  # names that fit so well are of one part only
-_REPEATED = 0.8  # how well the second joint of a bone fits, relative to its first
+_SECOND_JOINT_FIT = 0.8  # how well the second joint of a bone fits, relative to its first
 _MIN_FOREARM = 0.75  # of the upper arm: a wrist nearer to the elbow is half way to the hand
 # Of the bone above: how far from the knee a foot may be that hangs elsewhere in the tree.
 _SHIN_LENGTHS = (0.4, 1.8)
@@ -143,7 +143,7 @@ def _fits(tree: JointTree, chain: Sequence[int], fit: Fit) -> list[Mapping[str, 
     fits = [fit(tree.names[joint]) for joint in chain]
     sure = [{role for role, value in each.items() if value >= _SURE_FIT} for each in fits]
     return [
-        {role: value * _REPEATED for role, value in each.items()}
+        {role: value * _SECOND_JOINT_FIT for role, value in each.items()}
         if number and sure[number] and sure[number] == sure[number - 1]
         else each
         for number, each in enumerate(fits)

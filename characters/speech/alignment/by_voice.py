@@ -69,7 +69,7 @@ def align(recording: Speech, text: str, voice: Voice, language: str = "en") -> S
             f"the recording lasts {1e3 * recording.duration:.0f} ms: too short for a word"
         )
     spoken = cepstra(recording.samples, recording.rate)
-    frames = _sounding(spoken.level)
+    frames = _voiced_frames(spoken.level)
     features = spoken.features[frames]
     dialects = (
         DIALECTS.get(language, (language,)) if len(text) <= MAX_VARIANTS_TEXT else (language,)
@@ -151,7 +151,7 @@ def _template(
     return np.concatenate(rows), np.array(marks)
 
 
-def _sounding(level: NDArray[np.float64]) -> NDArray[np.intp]:
+def _voiced_frames(level: NDArray[np.float64]) -> NDArray[np.intp]:
     """Return the frames that are in no pause."""
     floor, loud = np.quantile(level, (0.05, 0.95))
     quiet = level < np.clip(floor + 8.0, loud - 45.0, loud - 20.0)

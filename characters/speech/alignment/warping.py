@@ -15,7 +15,7 @@ STEP_COST = 0.2
 MAX_CELLS = 40_000_000
 """Largest product of two lengths that are warped as a whole; it takes so many bytes."""
 
-COARSER = 16
+COARSE_ROWS = 16
 """Rows that are averaged for the coarse path."""
 
 BAND = 400
@@ -30,8 +30,8 @@ def warp(features: NDArray[np.float32], template: NDArray[np.float32]) -> NDArra
     if len(features) * len(template) <= MAX_CELLS:
         return _path(features, template, np.zeros(len(features), int), len(template))
     coarse = warp(_average(features), _average(template))
-    centre = COARSER * np.interp(
-        np.arange(len(features)), COARSER * (np.arange(len(coarse)) + 0.5), coarse + 0.5
+    centre = COARSE_ROWS * np.interp(
+        np.arange(len(features)), COARSE_ROWS * (np.arange(len(coarse)) + 0.5), coarse + 0.5
     )
     width = min(2 * BAND, len(template))
     lows = np.clip(centre.astype(int) - width // 2, 0, len(template) - width)
@@ -40,9 +40,9 @@ def warp(features: NDArray[np.float32], template: NDArray[np.float32]) -> NDArra
 
 
 def _average(rows: NDArray[np.float32]) -> NDArray[np.float32]:
-    count = -(-len(rows) // COARSER)
-    padded = np.pad(rows, ((0, count * COARSER - len(rows)), (0, 0)), "edge")
-    return np.asarray(padded.reshape(count, COARSER, -1).mean(1), np.float32)
+    count = -(-len(rows) // COARSE_ROWS)
+    padded = np.pad(rows, ((0, count * COARSE_ROWS - len(rows)), (0, 0)), "edge")
+    return np.asarray(padded.reshape(count, COARSE_ROWS, -1).mean(1), np.float32)
 
 
 def _path(

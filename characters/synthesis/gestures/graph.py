@@ -87,7 +87,7 @@ class GestureGraph:
         nodes = [*phrases, *alone] if strokes_alone else phrases
         measured = NodeMeasures.of(library, nodes, weights)
         count = len(phrases)
-        distances, following = measured.distances[:count, :count], _following(library)
+        distances, following = measured.distances[:count, :count], _successors(library)
         threshold = threshold or _sufficient_threshold(distances, following)
         joined = (distances < threshold) | following
         inside = largest_component([np.flatnonzero(row).tolist() for row in joined])
@@ -137,10 +137,10 @@ def sweep(
 ) -> list[Connectivity]:
     """Return how well the phrases of a library are connected at thresholds: Table 4.2."""
     distances = NodeMeasures.of(library, phrase_nodes(library), weights).distances[:-1, :-1]
-    return [connectivity(distances, _following(library), each) for each in thresholds]
+    return [connectivity(distances, _successors(library), each) for each in thresholds]
 
 
-def _following(library: GestureLibrary) -> NDArray[np.bool_]:
+def _successors(library: GestureLibrary) -> NDArray[np.bool_]:
     """Return which phrase follows which in a recording, (phrases, phrases): E1."""
     return np.diag(np.array(library.consecutive[1:], bool), 1)
 

@@ -20,7 +20,7 @@ JOINED_S = 0.3
 
 
 @dataclass(frozen=True)
-class Interval:
+class PhaseInterval:
     """A word that holds from a time to a time [s]."""
 
     start: float
@@ -28,10 +28,10 @@ class Interval:
     word: str
 
 
-def gestures_of(intervals: Sequence[Interval]) -> Iterator[GestureMarks]:
+def gestures_of(intervals: Sequence[PhaseInterval]) -> Iterator[GestureMarks]:
     """Yield the gesture of each stroke; strokes of both hands at a time are one."""
-    phases = {phase: _named(phase, intervals) for phase in WORDS}
-    strokes: list[Interval] = []
+    phases = {phase: _of_phase(phase, intervals) for phase in WORDS}
+    strokes: list[PhaseInterval] = []
     for each in phases["stroke"]:
         if strokes and each.start < strokes[-1].end:
             strokes[-1] = replace(strokes[-1], end=max(strokes[-1].end, each.end))
@@ -58,7 +58,7 @@ def gestures_of(intervals: Sequence[Interval]) -> Iterator[GestureMarks]:
         )
 
 
-def intervals_of(marks: GestureMarks) -> Iterator[Interval]:
+def intervals_of(marks: GestureMarks) -> Iterator[PhaseInterval]:
     """Yield the phases of a gesture that last, with their words."""
     end = marks.relax if marks.end is None else marks.end
     start = marks.ready if marks.start is None else marks.start
@@ -66,10 +66,10 @@ def intervals_of(marks: GestureMarks) -> Iterator[Interval]:
     words = "preparation", "hold", "stroke", "hold", "retraction"
     for word, (first, last) in zip(words, pairwise(times), strict=True):
         if last > first:
-            yield Interval(first, last, word)
+            yield PhaseInterval(first, last, word)
 
 
-def _named(phase: str, intervals: Sequence[Interval]) -> list[Interval]:
+def _of_phase(phase: str, intervals: Sequence[PhaseInterval]) -> list[PhaseInterval]:
     """Return the intervals of a phase in the order of time."""
     words = WORDS[phase]
     own = [each for each in intervals if any(word in each.word.lower() for word in words)]
@@ -78,5 +78,5 @@ def _named(phase: str, intervals: Sequence[Interval]) -> list[Interval]:
     return sorted(own, key=lambda each: each.start)
 
 
-def _joins(before: Interval, after: Interval) -> bool:
+def _joins(before: PhaseInterval, after: PhaseInterval) -> bool:
     return after.start - before.end <= JOINED_S

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.synthesis.gestures.intervals import Interval, gestures_of
+from cubeling.characters.synthesis.gestures.intervals import PhaseInterval, gestures_of
 from cubeling.characters.synthesis.gestures.marks import GestureMarks, MarkTable
 from cubeling.characters.xml_elements import XmlElement, XmlLimits, read_xml
 from cubeling.files import FileKind
@@ -131,7 +131,7 @@ def _read_elan(data: bytes, path: Path) -> Iterator[tuple[str, GestureMarks]]:
             continue
         else:
             times[own.get("ANNOTATION_ID", "")] = times[own["ANNOTATION_REF"]]
-        intervals.append(Interval(*times[own.get("ANNOTATION_ID", "")], each.text.strip()))
+        intervals.append(PhaseInterval(*times[own.get("ANNOTATION_ID", "")], each.text.strip()))
     return ((path.stem, marks) for marks in gestures_of(intervals))
 
 
@@ -151,7 +151,7 @@ def _read_anvil(data: bytes, path: Path) -> Iterator[tuple[str, GestureMarks]]:
             if ends[0] is None or ends[1] is None:
                 continue
             times[name, element.attributes.get("index", "")] = ends[0], ends[1]
-            intervals.append(Interval(ends[0], ends[1], element.text.strip()))
+            intervals.append(PhaseInterval(ends[0], ends[1], element.text.strip()))
     return ((path.stem, marks) for marks in gestures_of(intervals))
 
 

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.synthesis.gestures.intervals import Interval, intervals_of
+from cubeling.characters.synthesis.gestures.intervals import PhaseInterval, intervals_of
 from cubeling.characters.synthesis.gestures.marks import GestureMarks, MarkTable
 from cubeling.characters.synthesis.gestures.marks_files import COLUMNS
 from cubeling.files import write_whole
@@ -50,11 +50,13 @@ def _csv_text(table: MarkTable) -> str:
     return text.getvalue()
 
 
-def _tiers(marks: Sequence[GestureMarks]) -> dict[str, list[Interval]]:
+def _tiers(marks: Sequence[GestureMarks]) -> dict[str, list[PhaseInterval]]:
     """Return a tier of the phases, and one of the apices."""
     return {
         "gesture phase": [part for each in marks for part in intervals_of(each)],
-        "gesture apex": [Interval(each.stroke, each.stroke + APEX_S, "apex") for each in marks],
+        "gesture apex": [
+            PhaseInterval(each.stroke, each.stroke + APEX_S, "apex") for each in marks
+        ],
     }
 
 

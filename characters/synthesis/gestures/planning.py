@@ -136,7 +136,7 @@ class GesturePlanner:
             Of the anticipations, and of choices between equals.
         """
         late = [each for each in accents if each.time >= self.settings.first_s]
-        carried = carrying(late, self.settings.min_spacing_s)
+        carried = carrying_accents(late, self.settings.min_spacing_s)
         rng, window = np.random.default_rng(seed), self.settings.synchrony
         shape = len(carried), self.settings.anticipations
         leads = rng.uniform(window.shortest, window.longest, shape)
@@ -209,11 +209,11 @@ class GesturePlanner:
         )
 
 
-def carrying(accents: Sequence[Accent], min_spacing_s: float) -> list[Accent]:
+def carrying_accents(accents: Sequence[Accent], min_spacing_s: float) -> list[Accent]:
     """Return the accents that carry a gesture: of those that are closer, the stronger ones.
 
     >>> accents = [Accent(1.0, 0.5), Accent(1.3, 0.9), Accent(2.0, 0.4)]
-    >>> [each.time for each in carrying(accents, 0.5)]
+    >>> [each.time for each in carrying_accents(accents, 0.5)]
     [1.3, 2.0]
     """
     times: list[float] = []  # of those that were chosen, in order

@@ -18,7 +18,7 @@ from cubeling.characters.synthesis.gestures.library import Hand
 MIN_REST_S = 0.25
 """Shortest stay in rest between two gestures [s]."""
 
-REMEMBERED = 12
+REMEMBERED_GESTURES = 12
 """Number of gestures whose repetition costs something."""
 
 SAME_HAND = 3
@@ -213,7 +213,7 @@ class BeamSearch:
     def _repetition(self) -> Array:
         """Return what it costs that gestures repeat what was played lately, (states, nodes)."""
         ago = len(self._steps) - self._used[:, self._phrases]
-        again = np.maximum(1.0 - (ago - 1.0) / REMEMBERED, 0.0)
+        again = np.maximum(1.0 - (ago - 1.0) / REMEMBERED_GESTURES, 0.0)
         more = np.clip((self._row - SAME_HAND + 1) / 5.0, 0.0, 1.0)[:, None]
         again += np.where(self._hands == self._hand[:, None], more, 0.0)
         return self._weights.variety * again

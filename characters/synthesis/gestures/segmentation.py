@@ -39,7 +39,7 @@ NEAR, MOST_NEAR, LEAST_NEAR = 0.3, 0.25, 0.04
 """A hand rests within this share of its farthest way from its place of rest, and its limits
 [arm lengths]."""
 
-OFTEN = 0.3
+REST_SHARE = 0.3
 """A hand rests where it is slow at least this share as often as where it is most often."""
 
 CUTOFF_HZ = 10.0
@@ -51,7 +51,7 @@ MIN_REST_S = 0.2
 MIN_MOVE = 0.06
 """Shorter moves are none [arm lengths]."""
 
-SPLIT = 0.6
+SPLIT_SPEED_SHARE = 0.6
 """A minimum below this share of the peaks beside it parts two moves."""
 
 MIN_HOLD_S = 0.2
@@ -184,7 +184,7 @@ def rest_place(path: Array, slow: NDArray[np.bool_], radius: float) -> Array:
     sample = places[:: max(len(places) // 400, 1)]
     near = np.linalg.norm(sample[:, None] - sample[None], axis=-1) < radius
     counts = near.sum(1)
-    often = np.flatnonzero(counts >= OFTEN * counts.max())
+    often = np.flatnonzero(counts >= REST_SHARE * counts.max())
     mean: Array = sample[near[often[sample[often, 1].argmin()]]].mean(0)
     return mean
 
@@ -256,7 +256,7 @@ class _Unit:
                 continue
             if parts and parts[-1][1] == first:
                 before = float(speed[parts[-1][0] : first + 1].max())
-                if speed[first] > SPLIT * min(peak, before):
+                if speed[first] > SPLIT_SPEED_SHARE * min(peak, before):
                     parts[-1] = (parts[-1][0], last)
                     continue
             parts.append((first, last))

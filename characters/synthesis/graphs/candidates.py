@@ -38,7 +38,7 @@ class Candidates:
         """Return the pairs nearer than a threshold: T(a, b) of eq. 2.3."""
         return self.where(self.distances < threshold)
 
-    def barred_below(self, threshold: float) -> int:
+    def count_barred_below(self, threshold: float) -> int:
         """Return how many pairs nearer than a threshold have different labels."""
         return int(np.searchsorted(self.barred, threshold))
 

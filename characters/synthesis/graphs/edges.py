@@ -54,13 +54,13 @@ class Edges:
         """Number of the first edge of each node, and the number of edges, (nodes + 1,)."""
         return np.searchsorted(self.sources, np.arange(self.count + 1))
 
-    def leaving(self, node: int) -> slice:
+    def edges_from(self, node: int) -> slice:
         """Return the edges that leave a node."""
         return slice(int(self.firsts[node]), int(self.firsts[node + 1]))
 
     def weight(self, source: int, target: int) -> float:
         """Return the cost of the edge between two nodes; there is one."""
-        own = self.leaving(source)
+        own = self.edges_from(source)
         return float(self.weights[own][np.searchsorted(self.targets[own], target)])
 
     @cached_property

@@ -110,7 +110,7 @@ class MotionGraph:
         to_go = self.to_go(goals)
         if to_go.following[node] >= 0:
             return to_go.following[node]
-        own = self.edges.leaving(node)
+        own = self.edges.edges_from(node)
         totals = [
             weight + to_go.costs[target]
             for target, weight in zip(
@@ -192,7 +192,7 @@ def build_graph(
             "nearer; raise it"
         )
     inside = int((kept[sources] & kept[targets]).sum())
-    barred = candidates.barred_below(threshold)
+    barred = candidates.count_barred_below(threshold)
     return MotionGraph(library, edges, kept, threshold, barred, len(sources) - inside)
 
 

@@ -105,7 +105,7 @@ class HopCosts:
                 np.add(before[:-1], edges.onward, out=now[1:])
                 start = starts[time - 1] if time <= len(starts) else -1
                 if start >= 0:
-                    own = edges.leaving(start)
+                    own = edges.edges_from(start)
                     landing = edges.targets[own]
                     now[landing] = np.minimum(now[landing], edges.weights[own])
                 a, b = bounds[time]

@@ -136,7 +136,7 @@ class IdleDatabase:
         """Her small variations as extrema of components."""
         return Variations.of([self.space.project(r, COMPONENTS) for r in self.rests], self.rate)
 
-    def suiting(self, emotion: Emotion) -> "IdleDatabase":
+    def for_emotion(self, emotion: Emotion) -> "IdleDatabase":
         """Return what suits an emotion (S11), small variations too.
 
         These are the postures and shifts whose region it is in; if there is none, those that suit
@@ -148,8 +148,8 @@ class IdleDatabase:
             regions = [self._regions[n] for n in there]
             self._known[there] = replace(
                 self,
-                postures=_suiting(self.postures, regions),
-                shifts=_suiting(self.shifts, regions),
+                postures=_items_for(self.postures, regions),
+                shifts=_items_for(self.shifts, regions),
             )
         return self._known[there]
 
@@ -196,7 +196,7 @@ class IdleDatabase:
         return replace(self, shifts=self.shifts[:number] + self.shifts[number + 1 :])
 
 
-def _suiting(items: tuple[_Felt, ...], regions: Sequence[Region]) -> tuple[_Felt, ...]:
+def _items_for(items: tuple[_Felt, ...], regions: Sequence[Region]) -> tuple[_Felt, ...]:
     """Return the items of regions, or else those without a region, or else all."""
     there = tuple(each for each in items if each.feeling in regions)
     return there or tuple(each for each in items if each.feeling is None) or items

@@ -29,7 +29,7 @@ Small = Literal["recorded", "extrema"]
 REACTION_S = 0.7
 """After how long it leaves a posture that does not suit a new emotion [s]."""
 
-MARGIN = 0.1
+REGION_MARGIN = 0.1
 """How far an emotion may leave the region of a posture before that does not suit it."""
 
 FOLLOWED = 0.8
@@ -54,7 +54,7 @@ class IdleMotion:
         self._rng = np.random.default_rng(seed)
         self._emotion = NEUTRAL
         self._database = database
-        self._suiting = database.suiting(NEUTRAL)
+        self._suiting = database.for_emotion(NEUTRAL)
         self._variations: StretchStream | VariationStream
         if small == "recorded":
             self._variations = StretchStream(self._suiting.stretches, self._rng)
@@ -86,7 +86,7 @@ class IdleMotion:
     @database.setter
     def database(self, database: IdleDatabase) -> None:
         self._database = database
-        self._suit(database.suiting(self._emotion))
+        self._suit(database.for_emotion(self._emotion))
 
     def feel(self, emotion: Emotion | None) -> None:
         """Show an emotion from now on: by its postures and shifts, and in the length of pauses.
@@ -97,11 +97,11 @@ class IdleMotion:
         if emotion == self._emotion:
             return
         self._emotion = emotion
-        suiting = self._database.suiting(emotion)
+        suiting = self._database.for_emotion(emotion)
         if suiting is self._suiting:
             return
         region = self._posture.feeling
-        if region is not None and region.contains(emotion, MARGIN):
+        if region is not None and region.contains(emotion, REGION_MARGIN):
             return
         self._suit(suiting)
         if self._posture not in suiting.postures:
@@ -195,7 +195,7 @@ class IdleMotion:
         if waits or self._rested < self.pause(self._posture, self._chance):
             self._rested += 1.0 / self.database.rate
             return self._posture.vector
-        following = self._following(self._posture)
+        following = self._next_posture(self._posture)
         if following is not None:
             self._posture, shift = following
             self._shift.extend(shift[1:])
@@ -216,7 +216,7 @@ class IdleMotion:
         Equation 4.2 has chance · p_o for d − p_m; but people rest long or shortly, and seldom in
         between. A chance, 0…1, is the share of her rests on this balance that are shorter.
         """
-        database = self._knowing(posture.balance)
+        database = self._database_for(posture.balance)
         dwells = database.dwells[posture.balance]
         dwell = float(dwells[min(int(chance * len(dwells)), len(dwells) - 1)])
         # Nobody is active for less time than her rests that were not cut.
@@ -227,14 +227,14 @@ class IdleMotion:
         """Return the chance of the pause that was recorded in a posture; any, if none was."""
         if posture.number < 0:
             return float(self._rng.uniform())
-        dwells = self._knowing(posture.balance).dwells[posture.balance]
+        dwells = self._database_for(posture.balance).dwells[posture.balance]
         return float((np.searchsorted(dwells, posture.duration) + 0.5) / len(dwells))
 
-    def _knowing(self, balance: str) -> IdleDatabase:
+    def _database_for(self, balance: str) -> IdleDatabase:
         """Return what suits the emotion if it has rests on a balance, else all of the database."""
         return self._suiting if balance in self._suiting.by_balance else self._database
 
-    def _following(self, posture: RestingPosture) -> tuple[RestingPosture, Array] | None:
+    def _next_posture(self, posture: RestingPosture) -> tuple[RestingPosture, Array] | None:
         """Return where to rest next and the shift to there, or None if no shift leads on."""
         database = self._suiting
         recorded = [each for each in database.shifts if each.leaves == posture.number >= 0]

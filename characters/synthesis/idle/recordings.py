@@ -146,7 +146,7 @@ def read_standing(
     _refuse_unrest(clip, skeleton, placed, hips)
     balance, middle, heading = _balance(clip, skeleton, anatomy, placed)
     if _sits(skeleton, placed, hips):
-        balance = _leaning(anatomy, placed, heading)
+        balance = _lean(anatomy, placed, heading)
     places, turns = placed[:, hips, :3, 3], rotations.from_matrix(placed[:, hips, :3, :3])
     if alignment == "feet":
         back = rotations.about("y", -heading)
@@ -169,10 +169,10 @@ def borrow_shifts(
     """
     middle = np.concatenate([each.vectors for each in own]).mean(0)
     theirs = np.concatenate([each.vectors for each in lent]).mean(0)
-    return (*own, *(_moved(each, middle - theirs, own[0].rate) for each in lent))
+    return (*own, *(_move(each, middle - theirs, own[0].rate) for each in lent))
 
 
-def _moved(recording: StandingRecording, offset: Array, rate: float) -> StandingRecording:
+def _move(recording: StandingRecording, offset: Array, rate: float) -> StandingRecording:
     """Return a recording whose postures are moved by an offset, at another rate [Hz]."""
     count = round(len(recording.vectors) * rate / recording.rate)
     at = np.minimum(np.arange(count) * recording.rate / rate, len(recording.vectors) - 1)
@@ -211,7 +211,7 @@ def _sits(skeleton: Skeleton, placed: Array, hips: int) -> bool:
     return float(np.median(placed[:, hips, 1, 3])) < _MIN_HIPS_HEIGHT * standing
 
 
-def _leaning(anatomy: Anatomy, placed: Array, heading: float) -> Array:
+def _lean(anatomy: Anatomy, placed: Array, heading: float) -> Array:
     """Return how far a trunk leans to the left, (frames,), as a share of its height ÷ `_FAR_LEAN`.
 
     So somebody who sits shifts if she leans by about as much as she may while standing.

@@ -19,7 +19,7 @@ TURN_LAG_S = 0.35
 MAX_TURN_RATE = 3.0
 """A body turns no faster than this [rad/s]."""
 
-BRAKING = 1.6
+BRAKING_RATE = 1.6
 """Deceleration before a stop [body heights/s²]."""
 
 _STEPS = 15  # of one horizon: 1/15 s each
@@ -99,5 +99,5 @@ def _course(place: RootDelta, wish: Wish, body_height: float) -> tuple[float, fl
         left = math.hypot(wish.target[0] - place.x, wish.target[1] - place.z) - wish.stop_distance
         if left <= 0.0:
             return 0.0, 0.0
-        speed = min(speed, math.sqrt(2.0 * BRAKING * body_height * left))
+        speed = min(speed, math.sqrt(2.0 * BRAKING_RATE * body_height * left))
     return error, speed * max(math.cos(error), 0.0) if speed > 0.0 else 0.0

@@ -77,7 +77,7 @@ class Console(SendBuffer):
         if pending is None:
             return None
         settle = timing.NUDGED_SETTLE_S if pending.nudges or pending.patient else None
-        if self.reader.ended(now, settle or timing.PROMPT_SETTLE_S):
+        if self.reader.has_ended(now, settle or timing.PROMPT_SETTLE_S):
             return self._finish(pending)
         wait = timing.NUDGE_INTERVAL_S if pending.nudges else pending.command.timeout
         if now - pending.asked < wait or self.reader.prompt_came is not None:

@@ -90,7 +90,7 @@ class ConsoleReader:
         """Time of the prompt at the end [s]; None if there is none."""
         return self._stray[1] if self._stray and self._ends_stray else self._prompt_since
 
-    def ended(self, now: float, settle: float = timing.PROMPT_SETTLE_S) -> bool:
+    def has_ended(self, now: float, settle: float = timing.PROMPT_SETTLE_S) -> bool:
         """Return whether the answer has ended: its prompt has stood for `settle` [s]."""
         if self._prompt_since is None:
             settle = max(settle, timing.STRAY_SETTLE_S)

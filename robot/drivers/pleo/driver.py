@@ -216,7 +216,7 @@ class PleoDriver:
         reader = self.console.reader
         answer = reader.answer
         self._complaint = answer.error or self._complaint
-        if answer.restarted or (answer.spoke and reader.ended(now)):
+        if answer.restarted or (answer.spoke and reader.has_ended(now)):
             self._unsolicited += 1
             self._search(now)
 

@@ -9,7 +9,7 @@ from cubeling.characters import (
     LocomotionIntent,
     Obstacle,
     RootDelta,
-    View,
+    TableView,
 )
 from cubeling.characters.model.character import skin
 from tests.bundled_characters import bundled_character
@@ -104,7 +104,7 @@ def test_it_steps_out_of_the_shadow_of_what_hides_it():
     play = Play()
     screen = Obstacle(np.eye(4), np.array([0.12, 0.4, 0.01]), np.zeros(3))
     screen.table_from_box[2, 3] = 0.1
-    view = View(EYE, EVERYWHERE)
+    view = TableView(EYE, EVERYWHERE)
     for _ in range(round(2.5 * RATE)):
         play.frame(going=LocomotionIntent())
     for _ in range(round(2.5 * RATE)):

@@ -273,11 +273,11 @@ def test_a_leg_that_swings_is_as_long_as_in_the_source(human):
     nearer = away + [0.0, 0.03, 0.0]
     held = standing_on(human, nearer, standing)
     ground = np.full((30, 2), -np.inf)
-    longer = held.swinging_as_long(pose, extensions, ground)
+    longer = held.with_swing_lengths(pose, extensions, ground)
     assert longer.extensions(pose)[15, 0] == pytest.approx(extensions[15, 0], abs=1e-6)
     assert longer.ankles[standing] == pytest.approx(held.ankles[standing])
     ground[:] = held.ankles[..., 1] - 0.01
-    assert held.swinging_as_long(pose, extensions, ground).ankles[..., 1].min() >= ground.min()
+    assert held.with_swing_lengths(pose, extensions, ground).ankles[..., 1].min() >= ground.min()
 
 
 def test_hips_rise_over_a_step_that_came_nearer(human):

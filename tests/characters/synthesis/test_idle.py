@@ -311,11 +311,11 @@ def moody(database: IdleDatabase) -> IdleDatabase:
 
 def test_postures_and_shifts_suit_the_emotion(moody: IdleDatabase) -> None:
     for emotion in (Emotion(-0.6, -0.5), Emotion(0.5, 0.6)):
-        suiting = moody.suiting(emotion)
+        suiting = moody.for_emotion(emotion)
         felt = [p.feeling for p in suiting.postures] + [s.feeling for s in suiting.shifts]
         assert all(region is not None and region.contains(emotion) for region in felt)
     for emotion in (NEUTRAL, Emotion(0.0, -0.9)):  # no region of its own
-        assert {each.feeling for each in moody.suiting(emotion).postures} == {None}
+        assert {each.feeling for each in moody.for_emotion(emotion).postures} == {None}
 
 
 def test_a_new_emotion_shows_soon_and_without_a_jump(moody: IdleDatabase) -> None:
@@ -323,8 +323,8 @@ def test_a_new_emotion_shows_soon_and_without_a_jump(moody: IdleDatabase) -> Non
     rows = [motion.next_posture() for _ in range(100)]
     motion.feel(Emotion(0.5, 0.6))
     rows += [motion.next_posture() for _ in range(400)]
-    suits = [any(np.array_equal(row, p.vector) for p in moody.suiting(Emotion(0.5, 0.6)).postures)
-             for row in rows]  # fmt: skip
+    postures = moody.for_emotion(Emotion(0.5, 0.6)).postures
+    suits = [any(np.array_equal(row, p.vector) for p in postures) for row in rows]
     shift = max(len(each.vectors) for each in moody.shifts)
     assert not any(suits[:100])
     assert any(suits[100 : 100 + round(REACTION_S * RATE) + 2 * shift])

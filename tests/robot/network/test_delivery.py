@@ -280,7 +280,7 @@ def test_an_acknowledgement_of_an_earlier_session_is_ignored(network):
     robot = "cubeling/1/hall/robot/rex"
     ann.receive(f"{robot}/status", encode(StatusMessage(1, 1, "online", ("*/*",))), 0.0)
     ann.act("a1", 0.0, 0.0)
-    ann.outgoing(0.0)
+    ann.outgoing_messages(0.0)
     ann.receive(f"{robot}/taken", encode(AckMessage(1, 1, {"hall/a": (5, 1)})), 0.1)
     ann.tick(0.1)
     assert ann.pending == 0
@@ -289,7 +289,9 @@ def test_an_acknowledgement_of_an_earlier_session_is_ignored(network):
     ann.receive(f"{robot}/taken", encode(AckMessage(1, 1, {"hall/a": (5, 1)})), 0.3)
     ann.tick(0.4)
     assert ann.pending == 1
-    (action,) = [message for message in ann.outgoing(0.4) if message.topic.endswith("action")]
+    (action,) = [
+        message for message in ann.outgoing_messages(0.4) if message.topic.endswith("action")
+    ]
     assert decode(ActionMessage, action.payload).session == 901
 
 

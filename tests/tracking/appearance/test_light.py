@@ -44,7 +44,7 @@ def lit_one(normal: Array) -> Array:
 def picture(pose: Array, shade: Shade = lit_one, gain: float = 1.0) -> Image:
     """Draw the faces as bare paper, (H, W, 3) BGR: ink is where no sample is taken."""
     seen = _desk(gain).copy()
-    for number in PLANES.facing(pose, 0.0):
+    for number in PLANES.faces_towards(pose, 0.0):
         face = CUBE.faces[number]
         right, up = (np.array(axis, float) for axis in FACE_AXES[face.name])
         outline = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) * CUBE.edge / 2

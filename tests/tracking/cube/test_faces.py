@@ -90,9 +90,9 @@ def test_a_face_that_was_folded_askew_still_has_a_right_angled_frame() -> None:
 def test_only_faces_towards_the_camera_face_it() -> None:
     """Half a metre away and square on: one face, and its neighbours seen from behind."""
     pose = se3.pose(np.diag([1.0, -1.0, -1.0]), np.array([0, 0, 0.5]))
-    assert [FACES.names[number] for number in FACES.facing(pose, 0.1)] == ["front"]
+    assert [FACES.names[number] for number in FACES.faces_towards(pose, 0.1)] == ["front"]
     assert FACES.cosines(pose)[FACES.names.index("front")] == pytest.approx(1)
     assert FACES.cosines(pose)[FACES.names.index("back")] == pytest.approx(-1)
     # Aside in the picture the same attitude shows the inner side too.
     aside = se3.pose(pose[:3, :3], np.array([0.4, 0, 0.5]))
-    assert {FACES.names[number] for number in FACES.facing(aside, 0.1)} == {"front", "left"}
+    assert {FACES.names[number] for number in FACES.faces_towards(aside, 0.1)} == {"front", "left"}

@@ -34,7 +34,7 @@ def seen(corners: Array, rng: np.random.Generator) -> Array:
 def folded(rng: np.random.Generator) -> list[Observation]:
     """The markers of the folded cube that face the camera."""
     pose = some_pose(rng, (0.1, 0.8))
-    faces = [CUBE.faces[number] for number in FacePlanes(CUBE).facing(pose, 0.05)]
+    faces = [CUBE.faces[number] for number in FacePlanes(CUBE).faces_towards(pose, 0.05)]
     return [
         Observation(face, seen(face.corners @ pose[:3, :3].T + pose[:3, 3], rng)) for face in faces
     ]

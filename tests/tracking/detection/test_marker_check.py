@@ -27,7 +27,7 @@ VIEWS = [held(), held(0.8, -0.5, 0.4), held(0.4, 2.2, -0.3), held(-0.6, 0.7, 1.0
 
 def square_enough(pose: Array) -> set[str]:
     """Faces whose cells are wide enough to be read surely."""
-    return {FACES.names[number] for number in FACES.facing(pose, 0.35)}
+    return {FACES.names[number] for number in FACES.faces_towards(pose, 0.35)}
 
 
 def read(picture: Picture, pose: Array, reader: CellReader = READER) -> CellReading:

@@ -29,7 +29,7 @@ def true_markers(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, 
     """Corners of every marker that can be read, where they truly are [px]."""
     projection = Projection(camera)
     found = {}
-    for number in FacePlanes(cube).facing(pose, 0.3):
+    for number in FacePlanes(cube).faces_towards(pose, 0.3):
         face = cube.faces[number]
         corners = projection.project(face.corners @ pose[:3, :3].T + pose[:3, 3])
         if side_of(corners) > 28:

@@ -75,7 +75,7 @@ def detect(
 def corners_of(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, Array]:
     """Where the markers that look at the camera have their corners, (4, 2) [px]."""
     projection = Projection(camera)
-    faces = [cube.faces[number] for number in FacePlanes(cube).facing(pose, 0.15)]
+    faces = [cube.faces[number] for number in FacePlanes(cube).faces_towards(pose, 0.15)]
     return {
         face.name: projection.project(face.corners @ pose[:3, :3].T + pose[:3, 3]) for face in faces
     }

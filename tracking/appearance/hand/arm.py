@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from cubeling.tracking.appearance.hand.background import GRID_PX, MIDDLES, Box
-from cubeling.tracking.appearance.hand.components import holding
+from cubeling.tracking.appearance.hand.components import components_with
 from cubeling.tracking.appearance.hand.mask import HandMask
 from cubeling.tracking.appearance.hand.structuring_elements import SQUARE_3
 from cubeling.tracking.appearance.hand.window import HandWindow
@@ -105,7 +105,7 @@ def _arm(flags: Image, inside: Box, side: int) -> Image:
     """
     for operation in (cv2.MORPH_OPEN, cv2.MORPH_CLOSE):
         flags = np.asarray(cv2.morphologyEx(flags, operation, SQUARE_3), np.uint8)
-    arm = holding(flags, inside)
+    arm = components_with(flags, inside)
     if np.count_nonzero(arm) > side**2:
         body = cv2.morphologyEx(arm, cv2.MORPH_OPEN, np.ones((side, side), np.uint8)) > 0
         body[inside] = False

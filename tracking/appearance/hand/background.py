@@ -237,7 +237,7 @@ class Background:
         table = _NOT_TRUSTED + np.float32(self._trust) * _TRUST
         return np.asarray(cv2.LUT(looks, table), np.float32)
 
-    def differing(self, lab: Floats, samples: Box, start: Box) -> Box:
+    def difference_box(self, lab: Floats, samples: Box, start: Box) -> Box:
         """Return the rows and columns with what differs around a part, or comes from outside.
 
         Parameters

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from cubeling.tracking.geometry.arrays import Flags, Image
 
 
-def holding(flags: Image, seeds: Flags | tuple[slice, slice]) -> Image:
+def components_with(flags: Image, seeds: Flags | tuple[slice, slice]) -> Image:
     """Return the components of flagged pixels that hold one of the seeds, (h, w) 0 or 1.
 
-    >>> holding(np.array([[1, 1, 0, 1]], np.uint8), np.s_[:, :1]).tolist()
+    >>> components_with(np.array([[1, 1, 0, 1]], np.uint8), np.s_[:, :1]).tolist()
     [[1, 1, 0, 0]]
     """
     count, labels = cv2.connectedComponents(flags)

@@ -16,7 +16,7 @@ from cubeling.tracking.appearance.hand.colour_model import (
     Colours,
     colours,
 )
-from cubeling.tracking.appearance.hand.components import holding
+from cubeling.tracking.appearance.hand.components import components_with
 from cubeling.tracking.appearance.hand.edge import soft_cover
 from cubeling.tracking.appearance.hand.last_hand import LastHand
 from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
@@ -175,7 +175,7 @@ class HandFinder:
             self._since_whole = 0
         else:
             planes, cube = self._lab(samples), window.cube_box
-            window = window.part(self._background.differing(planes, window.samples, cube))
+            window = window.part(self._background.difference_box(planes, window.samples, cube))
         small = shrink(image[window.image_box], window.scale)
         planes = self._lab(small)
         change = self._background.camera_change(planes, window.box) if whole else None
@@ -201,7 +201,7 @@ class HandFinder:
         if view.whole:
             place = self._without(self._uncovered_pixels(place, view, by_colour), place, window)
         if cube.shows_hand and self._colours.hand_is_new:
-            place = self._without(self._resting(place, view, by_colour, cube), place, window)
+            place = self._without(self._still_hand(place, view, by_colour, cube), place, window)
         distinctness = self._colours.distinctness
         odds = hand_odds(window, cube, place, by_colour, distinctness)
         hand = choose_components(odds > 0, window, cube, place, by_colour, distinctness)
@@ -229,7 +229,7 @@ class HandFinder:
         doubtful[doubtful] = self._colours.uncovered_pixels(view.colours[doubtful], before)
         return doubtful
 
-    def _resting(
+    def _still_hand(
         self, place: WindowChange, view: _View, by_colour: Floats, cube: CubePart
     ) -> Flags:
         """Return where the background is a hand that has not moved since the beginning.
@@ -244,7 +244,8 @@ class HandFinder:
         near = cv2.dilate(evidence.view(np.uint8), SQUARE_5, iterations=2)
         hand = cv2.morphologyEx(alike.view(np.uint8), cv2.MORPH_CLOSE, SQUARE_3)
         return (
-            holding(np.asarray(cv2.max(hand, near), np.uint8), evidence).view(bool) & cube.outside
+            components_with(np.asarray(cv2.max(hand, near), np.uint8), evidence).view(bool)
+            & cube.outside
         )
 
     def _learn_first(self, view: _View, cube: CubePart) -> None:

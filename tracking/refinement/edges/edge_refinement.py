@@ -131,7 +131,7 @@ class EdgeRefiner:
     def _profiles(
         self, patch: Patch, pose: Array, blur_motion: Array, k1: float, readout_share: float
     ) -> EdgeProfiles | None:
-        facing = self._faces.facing(pose, MIN_FACING_COSINE)
+        facing = self._faces.faces_towards(pose, MIN_FACING_COSINE)
         if facing not in self._parts:
             self._parts[facing] = self._model.of_faces(facing)
         profiles = place_profiles(

@@ -132,7 +132,7 @@ class MotionBlurAligner:
 
     def _sample(self, patch: Patch, pose: Array, blur: float, count: int) -> "_Samples | None":
         """Place the samples, read the image there, and differentiate their places on the faces."""
-        facing = np.array(self._faces.facing(pose, MIN_FACING_COSINE), np.intp)
+        facing = np.array(self._faces.faces_towards(pose, MIN_FACING_COSINE), np.intp)
         if not len(facing):
             return None
         frames = pose @ self._frames[facing]

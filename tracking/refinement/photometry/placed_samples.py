@@ -110,7 +110,7 @@ class SamplePlacer:
         facing = np.array(
             [
                 number
-                for number in self.faces.facing(pose, MIN_FACING_COSINE)
+                for number in self.faces.faces_towards(pose, MIN_FACING_COSINE)
                 if faces is None or names[number] in faces
             ],
             np.intp,

@@ -19,7 +19,7 @@ from cubeling.app.counted import quantity
 from cubeling.app.ui.literal_text import literal_text
 
 if TYPE_CHECKING:
-    from cubeling.app.commands.robots.robot.trials import Trial
+    from cubeling.app.commands.robots.robot.trials import RobotTrial
     from cubeling.robot import Robot, Telemetry
 
 POLL_INTERVAL_S = 0.05
@@ -123,7 +123,7 @@ class LogPrinter:
                 )
 
 
-def _try(robot: Robot, trial: Trial, seconds: float, log: LogPrinter) -> tuple[bool, Text]:
+def _try(robot: Robot, trial: RobotTrial, seconds: float, log: LogPrinter) -> tuple[bool, Text]:
     """Start a trial and watch the telemetry; return whether it succeeded, and a line about it."""
     console = log.console
     began = time.monotonic()

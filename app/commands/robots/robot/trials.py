@@ -22,7 +22,7 @@ _JOINT = re.compile(r"(?P<name>.+)=(?P<angle>[-+]?[0-9]*\.?[0-9]+) ?(?P<unit>deg
 
 
 @dataclass(frozen=True)
-class Trial:
+class RobotTrial:
     """Something that a robot is asked to do, and how its telemetry answers."""
 
     name: str
@@ -41,7 +41,7 @@ class Trial:
     """The word for what `shown` tells."""
 
 
-def trials_of(robot: Robot, words: Sequence[str], joints: Sequence[str]) -> list[Trial]:
+def trials_of(robot: Robot, words: Sequence[str], joints: Sequence[str]) -> list[RobotTrial]:
     """Return what to try: moods by their words, joints as "neck=10deg", or all that it has."""
     catalogue = robot.catalogue
     moods = catalogue.moods
@@ -58,14 +58,14 @@ def trials_of(robot: Robot, words: Sequence[str], joints: Sequence[str]) -> list
     return [*(_emotion_trial(robot, word) for word in ("happy", "angry", "neutral")), *played]
 
 
-def _mood_trial(robot: Robot, word: str) -> Trial:
+def _mood_trial(robot: Robot, word: str) -> RobotTrial:
     emotion = Emotion(*WORD_PLACES.get(word, (0.0, 0.0)), word)
-    return Trial(
+    return RobotTrial(
         word, lambda: robot.express(emotion), lambda telemetry: telemetry.label == word, emotion
     )
 
 
-def _emotion_trial(robot: Robot, word: str) -> Trial:
+def _emotion_trial(robot: Robot, word: str) -> RobotTrial:
     """Return the trial of the emotion of a word, for a robot that has no moods."""
     emotion = Emotion(*WORD_PLACES[word])
 
@@ -76,11 +76,11 @@ def _emotion_trial(robot: Robot, word: str) -> Trial:
             < EMOTION_TOLERANCE
         )
 
-    return Trial(word, lambda: robot.express(emotion), shown, emotion)
+    return RobotTrial(word, lambda: robot.express(emotion), shown, emotion)
 
 
-def _play_trial(robot: Robot, name: str) -> Trial:
-    return Trial(
+def _play_trial(robot: Robot, name: str) -> RobotTrial:
+    return RobotTrial(
         name,
         lambda: robot.play(name),
         lambda telemetry: name in (telemetry.motion, telemetry.sound),
@@ -89,7 +89,7 @@ def _play_trial(robot: Robot, name: str) -> Trial:
     )
 
 
-def _joint_trial(robot: Robot, text: str) -> Trial:
+def _joint_trial(robot: Robot, text: str) -> RobotTrial:
     """Return the trial of a joint; raises RobotError for one that the robot cannot turn so."""
     found = _JOINT.fullmatch(text)
     if found is None:
@@ -104,4 +104,6 @@ def _joint_trial(robot: Robot, text: str) -> Trial:
         reached = abs(telemetry.joints.get(name, math.inf) - angle) < ANGLE_TOLERANCE_RAD
         return reached and name in telemetry.held
 
-    return Trial(text, lambda: robot.move({name: angle}, MOVE_DURATION_S), shown, None, "reached")
+    return RobotTrial(
+        text, lambda: robot.move({name: angle}, MOVE_DURATION_S), shown, None, "reached"
+    )

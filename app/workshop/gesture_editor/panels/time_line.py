@@ -156,7 +156,7 @@ def _phases(ui: Ui, axis: TimeAxis, rect: Rect) -> None:
         band = (ends[0], top), (ends[1], top + high)
         canvas.add_rect_filled(*band, pack_color(PHASE_COLORS[phase]), 5.0 * unit)
         with ui.font(SMALL):
-            words = _fitting(phase, end - start, ends[1] - ends[0] - 18.0 * unit)
+            words = _longest_fitting(phase, end - start, ends[1] - ends[0] - 18.0 * unit)
         place = ends[0] + 10.0 * unit, top + high / 2
         ui.write(words, place, PAPER if phase == "stroke" else INK, SMALL, 0.0)
     for number in range(1, gesture.repeats):
@@ -164,7 +164,7 @@ def _phases(ui: Ui, axis: TimeAxis, rect: Rect) -> None:
         canvas.add_line((x, top + 3), (x, top + high - 3), pack_color(PAPER), 1.2 * unit)
 
 
-def _fitting(phase: str, length: float, room: float) -> str:
+def _longest_fitting(phase: str, length: float, room: float) -> str:
     """Return the longest of some names that fits."""
     seconds = f"{length:.2f}"
     for words in (f"{phase}  {seconds} s", f"{phase} {seconds}", phase, seconds, phase[0]):

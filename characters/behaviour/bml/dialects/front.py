@@ -18,7 +18,7 @@ from cubeling.characters.behaviour.bml.parser import block_of_elements
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.xml_elements import XmlElement
 
-CONTAINERS = ("bml", "act", "fml", "fml-apml")
+CONTAINER_TAGS = ("bml", "act", "fml", "fml-apml")
 """Elements whose content is read as if it stood where they stand."""
 
 SILENT = {
@@ -70,10 +70,10 @@ def parse_dialect(document: str | bytes) -> Block:
     notes: list[tuple[int, str]] = []
     root = read_repaired(document, parser.LIMITS, notes)
     front = _Front(notes)
-    if root.tag not in (*CONTAINERS, *SYNCS, *CONVERSIONS):
-        known = f"<{'>, <'.join(CONTAINERS)}>"
+    if root.tag not in (*CONTAINER_TAGS, *SYNCS, *CONVERSIONS):
+        known = f"<{'>, <'.join(CONTAINER_TAGS)}>"
         raise CharacterError(f"BML, line {root.line}: <{root.tag}> is no {known} nor a behaviour")
-    block = block_of_elements(front.standard(root), CONTAINERS)
+    block = block_of_elements(front.standard(root), CONTAINER_TAGS)
     lines = sorted(dict.fromkeys(notes))
     texts = [f"line {line}: {text}" for line, text in lines[:MAX_NOTES]]
     if len(lines) > MAX_NOTES:
@@ -119,14 +119,14 @@ class _Front:
         """Find the behaviours of an element, which may be one itself."""
         was = element.namespace
         _make_plain(element)
-        if element.tag in CONTAINERS:
+        if element.tag in CONTAINER_TAGS:
             element.namespace = ""
-        if was not in ("", BML) and not element.namespace and element.tag in CONTAINERS:
+        if was not in ("", BML) and not element.namespace and element.tag in CONTAINER_TAGS:
             self._notes.append((element.line, f"namespace {was} is read as that of BML 1.0"))
         inside = required or element.tag == "required"
         if element.namespace or element.tag == "constraint":
             self._found.append((element, required))
-        elif element.tag in CONTAINERS or element.tag == "required":
+        elif element.tag in CONTAINER_TAGS or element.tag == "required":
             if element.tag == "bml":
                 self._take_attributes(element)
             for child in element.children:

@@ -50,7 +50,7 @@ LOOKS = {"left": "LEFT", "right": "RIGHT", "up": "UP", "down": "DOWN"}
 LOOK_ASIDE_DEG = "25"
 """How far a look goes aside that does not say it [degrees]."""
 
-AHEAD = ("front", "forward", "center", "straight", "interlocutor", "addressee")
+VIEWER_TARGETS = ("front", "forward", "center", "straight", "interlocutor", "addressee")
 """Targets of looks that are where the viewer is."""
 
 ACCENTS = {"weak": 0.3, "reduced": 0.3, "none": 0.2, "medium": 0.5, "strong": 0.8}
@@ -64,7 +64,7 @@ NO_NAMES = frozenset(
 
 XML_LANG = "{http://www.w3.org/XML/1998/namespace}lang"
 
-MARKS = ("tm", "mark", "sync", "bookmark")
+MARK_TAGS = ("tm", "mark", "sync", "bookmark")
 """Elements that mark a moment of a text."""
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
@@ -73,7 +73,7 @@ _HANDS = {"l": "LEFT", "lf": "LEFT", "left": "LEFT", "r": "RIGHT", "rt": "RIGHT"
 
 def convert(element: XmlElement, notes: Notes) -> list[XmlElement]:
     """Return the behaviours of the standard that an element of a dialect stands for."""
-    given = _described(element)
+    given = _description_numbers(element)
     for name, (own, factor, offset) in EXPRESSIVITY.items():
         if name in given:
             low = 0.0 if own in ("power", "openness") else -1.0
@@ -85,7 +85,7 @@ def convert(element: XmlElement, notes: Notes) -> list[XmlElement]:
     return [element] if change is None else change(element, notes)
 
 
-def _described(element: XmlElement) -> dict[str, float]:
+def _description_numbers(element: XmlElement) -> dict[str, float]:
     """Return the numbers of a description, by name in lower case."""
     found = dict[str, float]()
     for key, value in element.attributes.items():
@@ -235,7 +235,7 @@ def _gaze(element: XmlElement, notes: Notes) -> list[XmlElement]:
             given["offsetDirection"] = _both(side)
             given["offsetAngle"] = f"{max(abs(left), abs(down)):g}"
     target = given.get("target", "").strip()
-    given["target"] = "viewer" if target.lower() in AHEAD else target
+    given["target"] = "viewer" if target.lower() in VIEWER_TARGETS else target
     if not target:
         given["target"] = "viewer"
         if not side:
@@ -267,7 +267,7 @@ def _posture(element: XmlElement, notes: Notes) -> list[XmlElement]:
     return [element]
 
 
-def _pointing(element: XmlElement, notes: Notes) -> list[XmlElement]:
+def _point_elements(element: XmlElement, notes: Notes) -> list[XmlElement]:
     element.tag = "pointing"
     return [element]
 
@@ -325,7 +325,7 @@ def _take_text(
     for part in parts:
         if isinstance(part, str):
             text.append(part)
-        elif part.tag in MARKS:
+        elif part.tag in MARK_TAGS:
             given = part.attributes
             name = next((given[key] for key in ("id", "name", "mark") if given.get(key)), "")
             name = name.strip().rpartition(":")[2]
@@ -358,8 +358,8 @@ CONVERSIONS: Mapping[str, Callable[[XmlElement, Notes], list[XmlElement]]] = {
     "body": _posture,
     "posture": _posture,
     "postureShift": _posture,
-    "point": _pointing,
-    "reach": _pointing,
+    "point": _point_elements,
+    "reach": _point_elements,
     "locomotion": _locomotion,
 }
 """What is done with the elements of dialects, by tag."""

@@ -15,7 +15,7 @@ UNDECLARED = "urn:cubeling:undeclared:"
 MAX_PREFIXES = 32
 """Prefixes that are declared for a document."""
 
-ENCODINGS = ("utf-8", "us-ascii", "iso-8859-1", "iso-8859-15", "iso-8859-2", "windows-1252")
+NAMED_ENCODINGS = ("utf-8", "us-ascii", "iso-8859-1", "iso-8859-15", "iso-8859-2", "windows-1252")
 """Encodings that a document may name, besides UTF-16 with its mark."""
 
 _ENCODING = re.compile(rb"<\?xml[^>]{0,100}?encoding\s*=\s*[\"']([\w.-]{1,40})[\"']")
@@ -43,7 +43,7 @@ def read_repaired(
         raise CharacterError(
             f"{_place(1)}: more than {limits.bytes} bytes; write shorter documents"
         )
-    text = document if isinstance(document, str) else _decoded(document, notes)
+    text = document if isinstance(document, str) else _decode(document, notes)
     text = text.lstrip("\ufeff \t\r\n")
     begin = _end_of_prolog(text, 0)
     doctype = _DOCTYPE.match(text, begin)
@@ -62,14 +62,14 @@ def read_repaired(
         return read_xml(declared, limits, _place)
 
 
-def _decoded(document: bytes, notes: list[tuple[int, str]]) -> str:
+def _decode(document: bytes, notes: list[tuple[int, str]]) -> str:
     """Return the text of bytes in the encoding that they name, or in one that fits."""
     if document.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return document.decode("utf-16", "replace")
     named = _ENCODING.match(document.removeprefix(codecs.BOM_UTF8))
     first = "utf-8" if named is None else named[1].decode().lower()
     # A text that names UTF-16 and does not begin with its mark is in UTF-8.
-    for encoding in dict.fromkeys((first if first in ENCODINGS else "utf-8", "utf-8")):
+    for encoding in dict.fromkeys((first if first in NAMED_ENCODINGS else "utf-8", "utf-8")):
         try:
             return document.decode(encoding)
         except UnicodeDecodeError:

@@ -9,10 +9,10 @@ from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
-CONE = 0.92
+DIRECTION_COSINE = 0.92
 """Cosine of the angle within which vertices are in a direction."""
 
-QUANTILE = 0.9
+SURFACE_QUANTILE = 0.9
 """Share of these vertices that are inside the surface: hair and clothes may be outside."""
 
 OTHER_HAND = "other hand"
@@ -122,7 +122,7 @@ def _surface(vertices: Array, joint: Array, towards: Array) -> Array:
     ray /= np.linalg.norm(ray)
     offsets = vertices - middle
     along = offsets @ ray
-    near = along > CONE * np.linalg.norm(offsets, axis=1)
-    depth = np.quantile(along[near], QUANTILE) if near.any() else float(along.max())
+    near = along > DIRECTION_COSINE * np.linalg.norm(offsets, axis=1)
+    depth = np.quantile(along[near], SURFACE_QUANTILE) if near.any() else float(along.max())
     place: Array = middle + ray * depth
     return place

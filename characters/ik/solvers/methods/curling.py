@@ -37,7 +37,7 @@ def curl(task: Task) -> Task:
         turns, _ = task.bounds.cut(turns)
     start = task.start.copy()
     start[..., which] = turns
-    return task.starting_from(start)
+    return task.with_start(start)
 
 
 def _curled_points(task: Task, bones: Array) -> Array:

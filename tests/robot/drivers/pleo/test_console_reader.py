@@ -24,7 +24,7 @@ def read(text: str, cuts: tuple[int, ...] = (), echo: str = "STATS POWER") -> Co
 
 
 def ended(reader: ConsoleReader, after: float = PROMPT_SETTLE_S) -> bool:
-    return reader.ended(1.0 + after + 1e-9)
+    return reader.has_ended(1.0 + after + 1e-9)
 
 
 def test_the_battery_is_found_among_noise_that_cuts_into_its_line():
@@ -60,7 +60,7 @@ def test_any_cut_of_the_answer_reads_the_same(cuts):
 )
 def test_a_prompt_at_the_start_of_a_line_ends_the_answer(text):
     reader = read(text)
-    assert not reader.ended(1.0 + PROMPT_SETTLE_S / 2)
+    assert not reader.has_ended(1.0 + PROMPT_SETTLE_S / 2)
     assert ended(reader)
 
 
@@ -84,15 +84,15 @@ def test_text_after_the_prompt_takes_it_back():
     reader.feed(b"5 joints\r\n", 1.01)
     assert not ended(reader, 10.0)
     reader.feed(b"> ", 1.20)
-    assert not reader.ended(1.20 + PROMPT_SETTLE_S / 2)
-    assert reader.ended(1.20 + PROMPT_SETTLE_S + 1e-9)
+    assert not reader.has_ended(1.20 + PROMPT_SETTLE_S / 2)
+    assert reader.has_ended(1.20 + PROMPT_SETTLE_S + 1e-9)
 
 
 def test_monitor_lines_do_not_hold_up_a_prompt():
     reader = read("> ")
     for number in range(10):
         reader.feed(f"mu: sensor {number} = 1\r\n".encode(), 1.0 + number / 100)
-    assert reader.ended(1.0 + PROMPT_SETTLE_S + 1e-9)
+    assert reader.has_ended(1.0 + PROMPT_SETTLE_S + 1e-9)
 
 
 @pytest.mark.parametrize(
@@ -114,7 +114,7 @@ def test_garbage_raises_nothing_and_is_not_kept(chunks):
     for number, chunk in enumerate(chunks):
         reader.feed(chunk, number / 100)
         assert len(reader.line) <= MAX_LINE_CHARS
-    reader.ended(10.0)
+    reader.has_ended(10.0)
     reader.finish()
 
 
@@ -125,4 +125,4 @@ def test_a_line_without_an_end_is_not_kept_and_the_next_prompt_is_found():
         reader.feed(random.bytes(1000).replace(b"\n", b""), number / 1000)
         assert len(reader.line) <= MAX_LINE_CHARS
     reader.feed(b"\r\n> ", 2.0)
-    assert reader.ended(2.0 + PROMPT_SETTLE_S + 1e-9)
+    assert reader.has_ended(2.0 + PROMPT_SETTLE_S + 1e-9)

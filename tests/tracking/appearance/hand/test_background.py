@@ -47,7 +47,7 @@ def background() -> Background:
 
 
 def differing(background: Background, picture: np.ndarray) -> tuple[slice, slice]:
-    return background.differing(picture[:, MIDDLES, MIDDLES], SAMPLES, CUBE)
+    return background.difference_box(picture[:, MIDDLES, MIDDLES], SAMPLES, CUBE)
 
 
 def test_the_differing_part_of_a_still_desk_is_around_the_cube(background):

@@ -72,7 +72,7 @@ class FacePattern:
             Width and height of the part [px].
         """
         shown = np.zeros((size[1], size[0], 3), np.uint8)
-        facing = self._planes.facing(camera_from_cube, MIN_COSINE)
+        facing = self._planes.faces_towards(camera_from_cube, MIN_COSINE)
         corners = quads.astype(np.float32)
         for number in facing:
             matrix = cv2.getPerspectiveTransform(PRINT_CORNERS, corners[number])
