@@ -4,11 +4,14 @@ import ast
 from collections import defaultdict
 from pathlib import Path
 
+import pytest
+
 from tools.package_links import ROOMS
 
 ROOT = Path(__file__).parent.parent
 
 
+@pytest.mark.slow(reason="all modules are parsed")
 def test_no_two_public_classes_have_one_name():
     places = defaultdict(list)
     for room in ROOMS:

@@ -11,8 +11,8 @@ from rich.console import Console
 
 from cubeling.app.commands.play import demo
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView
+from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.summary import Summary
 from cubeling.app.ui import video_file
 from cubeling.app.ui.canvas import Canvas, rounded_rectangle
@@ -259,7 +259,7 @@ def test_a_lens_that_is_not_as_it_claims_is_named_once_in_play_and_in_the_summar
 ):
     _, out, _ = cubeling("replay", short_session, "--no-pictures")
     assert "This camera's lens" not in out
-    monkeypatch.setattr(Playground, "lens", LensEstimate(0.1, 0.01))
+    monkeypatch.setattr(TrackedCube, "lens", LensEstimate(0.1, 0.01))
     code, out, err = cubeling("replay", short_session, "--no-pictures")
     assert (code, err) == (0, "")
     line, row = out.split("This camera's lens")[1:]

@@ -65,7 +65,7 @@ def turned(one, other, joint=None):
 
 
 def test_hands_beat_with_a_speech_and_rest_before_and_after_it(human, silent):
-    speech = SpeechIntent(SAID, 1.0)
+    speech = SpeechIntent(SAID, 1.0, STILL)  # else she may stand on the other leg afterwards
     quiet, spoken = silent(9.0), played(human, always(speech), 9.0)
     arm = turned(quiet, spoken, human.anatomy.joint("rightUpperArm"))
     other = turned(quiet, spoken, human.anatomy.joint("leftUpperArm"))
@@ -122,7 +122,8 @@ def test_a_speech_that_is_cut_off_leaves_no_jump(human):
 
 
 def test_a_new_speech_takes_over_from_an_old_one(human, silent):
-    first, second = SpeechIntent(SAID, 0.2), SpeechIntent(replace(SAID, text="Four"), 1.5)
+    first = SpeechIntent(SAID, 0.2, STILL)
+    second = SpeechIntent(replace(SAID, text="Four"), 1.5, STILL)
     poses = played(human, lambda now: first if now < 1.5 else always(second)(now), 8.0)
     quiet = silent(8.0)
     arms = [human.anatomy.joint(f"{side}UpperArm") for side in ("left", "right")]
