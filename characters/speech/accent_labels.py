@@ -73,7 +73,11 @@ def _of_textgrid(path: Path) -> list[Interval]:
 
 
 def _of_table(path: Path) -> list[Interval]:
-    rows = [row for row in csv.reader(io.StringIO(LABELS_FILE.read_text(path))) if row]
+    try:
+        table = csv.reader(io.StringIO(LABELS_FILE.read_text(path), newline=""))
+        rows = [row for row in table if row]
+    except csv.Error as error:
+        raise CharacterError(f"{path}: not a CSV file: {error}") from None
     head = [cell.strip().lower() for cell in rows[0]] if rows else []
     column = next((head.index(name) for name in TIME_COLUMNS if name in head), None)
     end = next((head.index(name) for name in ("end", "end_s") if name in head), None)

@@ -70,7 +70,7 @@ class StrokeKey(NamedTuple):
     """When, 0…1 of all strokes."""
 
     number: int
-    """Which posture."""
+    """Number of its key posture."""
 
     way: Literal["path", "line", "round"]
     """Whether it is a point of a path, or a key, and then whether hands get there in a circle or a

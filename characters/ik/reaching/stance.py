@@ -25,7 +25,7 @@ class StandingLegs:
 
     @property
     def joints(self) -> list[int]:
-        """All of them."""
+        """The joints of legs and neck, and the pelvis if there are legs to stand on."""
         legs = [joint for leg in self.legs for joint in leg]
         return [*legs, *self.neck, *([self.pelvis] if self.legs else [])]
 

@@ -38,19 +38,19 @@ class GestureMarks:
     """Its preparation begins; None: where the clip, or the gesture before it, ends."""
 
     ready: float
-    """Its preparation ends."""
+    """Its preparation ends: the hand is where the stroke begins, and may hold there."""
 
     stroke_start: float
-    """Its stroke begins."""
+    """Its stroke begins, after the hold before it."""
 
     stroke: float
     """Its apex: the emphasis."""
 
     stroke_end: float
-    """Its stroke ends."""
+    """Its stroke ends; the hand may hold there."""
 
     relax: float
-    """Its retraction begins."""
+    """Its retraction begins, after the hold that follows the stroke."""
 
     end: float | None
     """Its retraction ends; None: at the end of the clip."""
@@ -105,10 +105,10 @@ class Agreement:
     """How found gestures agree with marked ones; agreements of clips add up."""
 
     marked: int = 0
-    """Marked strokes."""
+    """How many strokes a person marked."""
 
     found: int = 0
-    """Found strokes."""
+    """How many strokes were found in their place."""
 
     met: int = 0
     """Marked strokes that a found one overlaps."""

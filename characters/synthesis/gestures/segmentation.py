@@ -21,7 +21,7 @@ from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.synthesis.gestures.analysis import APEX_SPEED, find_stop, hand_speed
 
 REST, RETRACTION, HOLD, PREPARATION, STROKE = range(5)
-"""Labels of frames."""
+"""Labels of frames: what the hands do in them."""
 
 Labels = NDArray[np.int8]
 """A label for each frame, (frames,)."""

@@ -19,6 +19,9 @@ from cubeling.characters.formats.mocap.bvh_writing import save_bvh
 from cubeling.characters.formats.mocap.hanim import BAP_COUNT
 from cubeling.characters.retargeting.root import with_root_joint
 from cubeling.characters.speech.textgrid import Interval, TextGrid, Tier, write_textgrid
+from cubeling.characters.synthesis.gestures.marks import GestureMarks
+from cubeling.characters.synthesis.gestures.marks_files import MARKS_FILE
+from cubeling.characters.synthesis.gestures.marks_writing import write_marks
 from cubeling.characters.synthesis.graphs.building import analyse
 from cubeling.characters.synthesis.graphs.storage import save_graph
 from cubeling.characters.synthesis.library import MotionLibrary
@@ -89,6 +92,10 @@ def _writers() -> Iterator[tuple[str, Callable[[Path], object]]]:
     yield "a.mp4", _write_video
     yield "a.txt", lambda path: path.write_text(TEXT, "utf-8")
     yield "a.bml", lambda path: path.write_text(BLOCK, "utf-8")
+    table = {"a": [GestureMarks(0.1, 0.4, 0.5, 0.6, 0.8, 1.0, 1.4)]}
+    for suffix in MARKS_FILE.suffixes:
+        yield f"marks{suffix}", lambda path: write_marks(path, table)
+    yield "labels.csv", lambda path: path.write_text("start,end,label\n0.2,0.3,H*\n1,1.1,\n")
     yield "rules.toml", lambda path: path.write_text(RULES, "utf-8")
     yield "a.glb", lambda path: path.write_bytes(build_arm().bytes())
     yield "a.fbx", lambda path: path.write_text(arm(), "utf-8")

@@ -218,6 +218,7 @@ CONTAINERS: dict[str, Callable[[bytes, Random], bytes]] = {
     **dict.fromkeys((".glb", ".vrm", ".vrma"), _glb),
     **dict.fromkeys((".idle", ".graph", ".gestures"), _archive),
     **dict.fromkeys((".toml", ".yaml", ".xml", ".bml", ".TextGrid", ".txt"), _text),
+    **dict.fromkeys((".csv", ".eaf", ".anvil"), _text),
     **dict.fromkeys((".bvh", ".amc", ".asf", ".bap", ".fap"), _text),
     ".gltf": damage_json,
     ".mcap": _session,

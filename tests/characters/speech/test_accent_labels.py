@@ -71,3 +71,10 @@ def test_a_table_without_times_is_refused_in_one_line(tmp_path, text):
     with pytest.raises(CharacterError, match=r"no accents|no time in seconds") as caught:
         read_accent_labels(path)
     assert "\n" not in str(caught.value)
+
+
+def test_a_table_with_an_endless_field_is_refused(tmp_path):
+    path = tmp_path / "times.csv"
+    path.write_text("time\n" + 200_000 * "1")
+    with pytest.raises(CharacterError, match="not a CSV file"):
+        read_accent_labels(path)
