@@ -51,7 +51,7 @@ TITLE_PX = 30
 EDGE_SHARE = 0.2
 """Edge of the cube that is held, as a part of the body's height."""
 
-STEPS = ((0.5, ""), (3.0, "reach low"), (5.5, "reach far"), (8.0, "hold"), (11.0, ""), (12.5, ""))
+STEPS = ((0.5, ""), (4.0, "reach low"), (7.5, "reach far"), (12.0, "hold"), (14.0, ""))
 """Until when [s] the stranger reaches for what."""
 
 
@@ -152,7 +152,7 @@ def _speaker(body: Character, lines: LineSource, title: str, frozen: bool) -> Sc
 def _reaching(body: Character) -> Take:
     """Return a person who reaches low and far, then holds a cube with both hands."""
     animator = Animator(body, place=RootDelta())
-    size = body.height
+    size = animator.scale * body.height
     poses: list[Pose] = []
     begun: dict[str, float] = {}
     for number in range(round(STEPS[-1][0] * RATE_HZ)):
@@ -165,13 +165,14 @@ def _reaching(body: Character) -> Take:
 
 
 def _intent(doing: str, times: Times, size: float) -> BehaviourIntent:
-    """Return what asks for one thing; places are parts of the body's height."""
+    """Return what asks for one thing; places are parts of the body's height on the table."""
     if doing == "hold":
-        middle = size * np.array([0.0, 0.4, 0.26])
-        side = size * np.array([EDGE_SHARE / 2, 0.0, 0.0])
+        middle = size * np.array([0.0, 0.5, 0.26])
+        out = np.array([1.0, 0.0, 0.0])
+        half = size * EDGE_SHARE / 2
         reaches = tuple(
             ReachIntent(
-                f"hold {hand}", middle + sign * side, times, "hold", hand, palm=-sign * side
+                f"hold {hand}", middle + sign * half * out, times, "hold", hand, palm=-sign * out
             )
             for hand, sign in (("left", 1.0), ("right", -1.0))
         )
