@@ -26,11 +26,11 @@ def on_one_thread(work: Callable[Given, Result]) -> Callable[Given, Result]:
     """Let a function do its linear algebra on one thread, and give the others back after it."""
 
     @wraps(work)
-    def limited(*given: Given.args, **named: Given.kwargs) -> Result:
+    def run_limited(*given: Given.args, **named: Given.kwargs) -> Result:
         threaded = _thread_controller()
         if threaded is None:
             return work(*given, **named)
         with threaded.limit(limits=1):
             return work(*given, **named)
 
-    return limited
+    return run_limited

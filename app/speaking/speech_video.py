@@ -93,7 +93,7 @@ def sound_blocks(samples: NDArray[np.float32]) -> Callable[[int], NDArray[np.flo
     """Return what gives sound, (n, 1) or (n, 2), in stereo blocks, and silence at the end."""
     at = 0
 
-    def following(count: int) -> NDArray[np.float32]:
+    def next_block(count: int) -> NDArray[np.float32]:
         nonlocal at
         block = np.zeros((count, 2), np.float32)
         part = samples[at : at + count]
@@ -101,7 +101,7 @@ def sound_blocks(samples: NDArray[np.float32]) -> Callable[[int], NDArray[np.flo
         at += count
         return block
 
-    return following
+    return next_block
 
 
 def put_subtitle(picture: NDArray[np.uint8], speech: SpeechIntent, now: float) -> None:

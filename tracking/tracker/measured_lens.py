@@ -109,12 +109,12 @@ def track_through(track: Track, cube: CubeModel, before: Intrinsics, after: Intr
     points = np.concatenate([face.corners for face in cube.faces])
     longer = after.matrix[0, 0] / before.matrix[0, 0]
 
-    def moved(each: TrackedPose) -> TrackedPose:
+    def see_again(each: TrackedPose) -> TrackedPose:
         velocity = each.velocity * [1, 1, longer, 1, 1, 1]
         pose = _pose_through(each.camera_from_cube, points, before, after)
         return replace(each, camera_from_cube=pose, velocity=velocity)
 
-    return Track(tuple(moved(each) for each in track.poses))
+    return Track(tuple(see_again(each) for each in track.poses))
 
 
 def _pose_through(pose: Array, points: Array, before: Intrinsics, after: Intrinsics) -> Array:
