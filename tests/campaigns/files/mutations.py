@@ -29,6 +29,9 @@ WORDS = (0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0xFFFF)
 
 Random = np.random.Generator
 
+MOST_REPEATED = 300_000
+"""Bytes that a stretch is repeated to at most."""
+
 
 def mutant(data: bytes, suffix: str, random: Random) -> bytes:
     """Return a damaged copy of a file; what lies in containers is damaged half of the time."""
@@ -74,8 +77,10 @@ def _remove(data: bytes, random: Random) -> bytes:
 
 
 def _repeat(data: bytes, random: Random) -> bytes:
+    """Repeat a stretch, sometimes until it is longer than a parser may expect a field to be."""
     start, end = _spot(data, random)
-    return data[:end] + data[start:end] * int(2.0 ** random.uniform(0, 8)) + data[end:]
+    count = min(int(2.0 ** random.uniform(0, 16)), MOST_REPEATED // (end - start))
+    return data[:end] + data[start:end] * count + data[end:]
 
 
 def _word(data: bytes, random: Random) -> bytes:
