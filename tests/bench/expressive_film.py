@@ -32,7 +32,13 @@ from cubeling.app.speaking.view import View
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.characters import Animator, Character, CharacterCommand, Pose, RootDelta
 from cubeling.characters.behaviour.expressivity import NEUTRAL, GestureExpressivity
-from cubeling.characters.behaviour.intents import BehaviourIntent, GazeIntent, ReachIntent, Times
+from cubeling.characters.behaviour.intents import (
+    BehaviourIntent,
+    GazeIntent,
+    Hand,
+    ReachIntent,
+    Times,
+)
 from cubeling.characters.rendering import PortraitRenderer, create_context
 from cubeling.characters.retargeting import with_lent_motions
 from tests.bench.lent_motions import save_vrm
@@ -53,6 +59,9 @@ EDGE_SHARE = 0.2
 
 STEPS = ((0.5, ""), (4.0, "reach low"), (7.5, "reach far"), (12.0, "hold"), (14.0, ""))
 """Until when [s] the stranger reaches for what."""
+
+HANDS: tuple[tuple[Hand, float], ...] = (("left", 1.0), ("right", -1.0))
+"""Each hand, and on which side of the cube it is: left is positive."""
 
 
 @dataclass(frozen=True)
@@ -174,7 +183,7 @@ def _intent(doing: str, times: Times, size: float) -> BehaviourIntent:
             ReachIntent(
                 f"hold {hand}", middle + sign * half * out, times, "hold", hand, palm=-sign * out
             )
-            for hand, sign in (("left", 1.0), ("right", -1.0))
+            for hand, sign in HANDS
         )
     else:
         low = doing == "reach low"
