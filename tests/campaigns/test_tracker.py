@@ -23,3 +23,8 @@ def test_what_the_tracker_raises_is_counted_with_its_clip(monkeypatch) -> None:
     assert not counts
     assert list(raised) == [2, 3]
     assert "KeyError: 'top'" in raised[2]
+
+
+def test_the_other_lean_of_a_face_that_no_marker_was_read_of_raises_nothing() -> None:
+    counts, told = show(1, 31)
+    assert (sum(counts.values()), told) == (FRAMES_PER_CLIP, "")

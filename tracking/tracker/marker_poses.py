@@ -182,6 +182,8 @@ class MarkerPoses:
         """
         if match is None or not match.proved:
             seen = solution.observations
+            if not seen:  # the other lean of a face that no marker was read of
+                return []
             fine = min(each.size for each in seen) / self._cells_per_side > MIN_FINE_CELL_PX
             if len(seen) == 1 < len({each.face.name for each in observations}):
                 return []
