@@ -46,7 +46,7 @@ NO_HANDS_EFFORT = 3.0
 FACING_CUBE = ("touch", "stretch", "point", "clasp")
 """What it does with its front to the cube; else it turns to the player."""
 
-STAYING = (
+ACTS_IN_PLACE = (
     "watch",
     "touch",
     "cheer",
@@ -226,7 +226,7 @@ def _next_place(scene: ReachScene, body: PosedBody, walks: bool, edge: float) ->
         target = way_to(here, scene.touch, body.parts.stand, walks=walks)
     elif scene.doing == "clasp" and gap(here, scene.cube, close := _clasp_distance(body, edge)):
         target = way_to(here, scene.cube, close, walks=walks)
-    elif scene.doing in STAYING and (aside := out_of(here, scene.cube, edge)) is not None:
+    elif scene.doing in ACTS_IN_PLACE and (aside := out_of(here, scene.cube, edge)) is not None:
         target = way_to(here, aside, 0.0, walks=walks)
     else:
         facing = PLAYER_POSITION

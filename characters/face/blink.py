@@ -14,7 +14,7 @@ from cubeling.characters.motion.curves import ease
 RESTING_HZ, TALKING_HZ = 17.0 / 60.0, 26.0 / 60.0
 """Blinks of people at rest, and in conversation [1/s]."""
 
-SPREAD = 0.6
+INTERVAL_LOG_DEVIATION = 0.6
 """Standard deviation of the logarithm of the time between two blinks: it is log-normal."""
 
 MIN_INTERVAL_S = 0.5
@@ -73,8 +73,8 @@ class BlinkTimer:
 
     def _wait(self) -> float:
         """Return the time at rest from one blink to the next [s]."""
-        mean = math.log(1.0 / RESTING_HZ) - SPREAD * SPREAD / 2.0
-        return float(self._rng.lognormal(mean, SPREAD))
+        mean = math.log(1.0 / RESTING_HZ) - INTERVAL_LOG_DEVIATION * INTERVAL_LOG_DEVIATION / 2.0
+        return float(self._rng.lognormal(mean, INTERVAL_LOG_DEVIATION))
 
 
 def lid_closure(time: float) -> float:

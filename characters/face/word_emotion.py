@@ -32,10 +32,10 @@ LEAD_S = 0.35
 LINGER_S = 0.6
 """And keeps it so long after the last one [s]."""
 
-STRENGTH = 0.85
+TOLD_SHARE = 0.85
 """Share of the emotion of a word that its mention tells."""
 
-UNPLEASANT = -0.1
+MAX_UNPLEASANT_VALENCE = -0.1
 """Valence below which somebody feels badly."""
 
 _WORDS = re.compile(r"[^\W\d_]+(?:['’][^\W\d_]+)*")
@@ -95,7 +95,7 @@ def told_emotion(sentence: str, language: str) -> Emotion | None:
         return None
     most = max(counts, key=lambda each: counts[each])
     valence, arousal = WORD_PLACES[most]
-    return Emotion(STRENGTH * valence, STRENGTH * arousal, most)
+    return Emotion(TOLD_SHARE * valence, TOLD_SHARE * arousal, most)
 
 
 def face_of(felt: Emotion | None, told: Emotion | None) -> Emotion | None:
@@ -104,7 +104,7 @@ def face_of(felt: Emotion | None, told: Emotion | None) -> Emotion | None:
     What is unpleasant to tell leaves no smile. What is pleasant to tell makes nobody smile who
     feels badly.
     """
-    if told is None or (felt is not None and felt.valence < UNPLEASANT):
+    if told is None or (felt is not None and felt.valence < MAX_UNPLEASANT_VALENCE):
         return felt
     if felt is None or told.valence < 0.0 or felt.word == "neutral":
         return told

@@ -10,7 +10,7 @@ import numpy as np
 
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.control.layers.layer import Found, FrameContext
-from cubeling.characters.control.speaking.arms import DOFS, ArmJoints
+from cubeling.characters.control.speaking.arms import ARM_MOVEMENTS, ArmJoints
 from cubeling.characters.control.speaking.spoken import SpokenBody, speech_seed
 from cubeling.characters.control.speaking.state import NOT_SPEAKING
 from cubeling.characters.control.tagged_gestures import spans_with_hands
@@ -107,7 +107,7 @@ class SpeechLayer:
         emphasis = 2.0 ** (0.0 if speech is None else speech.emphasis)
         size = context.expressivity.amplitude * emphasis
         nods = emphasis * (1.0 if self._character.gestures is None else HANDS_SHARE)
-        state, arms = NOT_SPEAKING, np.zeros(2 * len(DOFS))
+        state, arms = NOT_SPEAKING, np.zeros(2 * len(ARM_MOVEMENTS))
         for number, spoken in enumerate(self._spoken):
             body, share = spoken.body, self._free * spoken.share(now)
             body.advance(now - spoken.speech.start)

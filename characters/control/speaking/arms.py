@@ -13,7 +13,7 @@ from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.smoothing import smoothstep
 from cubeling.characters.speech.speech import Accent, Syllable
 
-DOFS = ("swing forward", "swing out", "bend elbow", "bend wrist")
+ARM_MOVEMENTS = ("swing forward", "swing out", "bend elbow", "bend wrist")
 """What one arm does [degrees each]."""
 
 OPEN_DEG = np.array([4.0, 9.0, 14.0, 0.0])
@@ -54,13 +54,13 @@ def arm_movement(
     shares = rng.uniform(0.35, 1.0, (len(accents), 2))
     strokes = strengths[:, None, None] * shares[..., None] * STROKE_DEG
     swings = np.concatenate([SWING_DEG, SWING_DEG * rng.uniform(0.5, 0.8)])
-    rates = math.tau * rng.uniform(*DRIFT_HZ, 2 * len(DOFS))
-    phases = rng.uniform(0.0, math.tau, 2 * len(DOFS))
+    rates = math.tau * rng.uniform(*DRIFT_HZ, 2 * len(ARM_MOVEMENTS))
+    phases = rng.uniform(0.0, math.tau, 2 * len(ARM_MOVEMENTS))
     here = smoothstep(((times + LEAD_S) / LEAD_S).clip(0.0, 1.0))
     here *= smoothstep(((end + TAIL_S - times) / TAIL_S).clip(0.0, 1.0))
     held = np.tile(OPEN_DEG, 2) + np.sin(np.outer(times, rates) + phases) * np.tile(DRIFT_DEG, 2)
     held += np.outer(syllable_swing(times, syllables), swings)
-    sizes = strokes.reshape(len(accents), 2 * len(DOFS))
+    sizes = strokes.reshape(len(accents), 2 * len(ARM_MOVEMENTS))
     found: Array = here[:, None] * held
     return found + pulses(times, [each.time for each in accents], sizes, STROKE_KEYS)
 
@@ -81,14 +81,14 @@ class ArmJoints:
             for joint, bone, forward in zip(joints, bones, (0, 2, 3), strict=True):
                 # A turn about bone × ahead brings the bone ahead, whether arms rest down or out.
                 ahead = np.cross(bone, [0.0, 0.0, 1.0])
-                weights = np.zeros((2, len(DOFS), 3))
+                weights = np.zeros((2, len(ARM_MOVEMENTS), 3))
                 weights[arm, forward] = ahead / max(float(np.linalg.norm(ahead)), 1e-9)
                 if joint == upper:
                     weights[arm, 1, 2] = 1.0 if side == "left" else -1.0
                 rows.append((joint, weights))
         self._joints = np.array([joint for joint, _ in rows], np.intp)
         axes = body_axes(skeleton, self._joints)
-        weights = np.array([each for _, each in rows]).reshape(len(rows), 2 * len(DOFS), 3)
+        weights = np.array([each for _, each in rows]).reshape(len(rows), 2 * len(ARM_MOVEMENTS), 3)
         # From what both arms do [degrees] to rotation vectors in the joints' frames.
         self._vectors = np.radians(np.einsum("jab,jdb->jad", axes, weights))
 

@@ -21,7 +21,7 @@ BACK_S = (2.3, 0.5)
 EVERY_S, LASTS_S = (4.0, 1.0), (1.0, 0.2)
 """Between: after how long they look away again, and for how long [s]."""
 
-MOSTLY = 0.7
+LIKELY_DIRECTION_SHARE = 0.7
 """Share of looks that go up while thinking, and aside later."""
 
 THINKING_HEAD, LATER_HEAD = 0.4, 0.1
@@ -51,7 +51,7 @@ class Aversions:
             start = end + _draw(EVERY_S, rng)
 
     def _add(self, start: float, end: float, thinking: bool, rng: np.random.Generator) -> None:
-        up = (rng.uniform() < MOSTLY) == thinking
+        up = (rng.uniform() < LIKELY_DIRECTION_SHARE) == thinking
         side, size = rng.choice((-1.0, 1.0)), rng.uniform(0.8, 1.2)
         yaw, pitch = (0.4, 1.0) if up else (1.0, rng.uniform(-0.5, 0.2))
         head = THINKING_HEAD if thinking else LATER_HEAD

@@ -98,7 +98,7 @@ def syllable_swing(times: Array, syllables: Sequence[Syllable]) -> Array:
 LOUD_S = 0.075
 """How long a syllable is loud, as a standard deviation [s]."""
 
-SLOWEST = 0.35
+PAUSE_PACE = 0.35
 """Pace of hands in a pause, as a share of their mean pace."""
 
 MEAN_S = 0.55
@@ -118,7 +118,7 @@ def syllable_clock(times: Array, utterance: Utterance) -> Array:
     for each in utterance.syllables:
         away = (times - each.time) / LOUD_S
         loud = np.maximum(loud, (0.3 + 0.7 * each.loudness) * np.exp(-0.5 * away * away))
-    pace = SLOWEST + (1.0 - SLOWEST) * loud / np.maximum(_mean(loud, MEAN_S / step), 0.2)
+    pace = PAUSE_PACE + (1.0 - PAUSE_PACE) * loud / np.maximum(_mean(loud, MEAN_S / step), 0.2)
     way = np.append(0.0, np.cumsum((pace[1:] + pace[:-1]) / 2.0 * step))
     accents = (each.time for each in utterance.accents)
     knots = np.array([times[0], 0.0, *(t for t in accents if 0.0 < t < end), end, times[-1]])

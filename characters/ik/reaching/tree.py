@@ -83,7 +83,7 @@ CONE_SPRING, CONE_RAD = 3.0, math.radians(85.0)
 GAZE_SPRING, GAZE_RAD = 1.0, math.radians(55.0)
 """How stiff a neck is that is turned further than this to see."""
 
-RELAXATION = 0.65
+STEP_SHARE = 0.65
 """Share of each step that is made: where a range ends, whole steps go to and fro about the end."""
 
 MAX_STEP_RAD, MAX_STEP_HEIGHTS = 0.6, 0.12
@@ -282,7 +282,7 @@ class _Energy:
                 force = force - TAUT_LEG * TAUT_LEG * room * longer
                 change = np.linalg.solve(matrix, force).tolist()
         shifted = max(map(abs, change[:3])) / (MAX_STEP_HEIGHTS * self.height)
-        size = RELAXATION / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
+        size = STEP_SHARE / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
         return [value - size * more for value, more in zip(state, change, strict=True)]
 
     def plant(self, state: list[float]) -> list[float]:

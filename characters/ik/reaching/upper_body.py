@@ -142,12 +142,7 @@ class UpperBody:
         style: ReachStyle = NEUTRAL_REACH,
     ) -> ReachedPose:
         """Return a pose with its hands where they are to be, and the effort that it takes."""
-        asked = {"left": left, "right": right}
-        wanted = [
-            (arm, target)
-            for side, arm in self.arms.items()
-            if (target := asked[side]) is not None and target.weight > 0.0
-        ]
+        wanted = self.wanted_hands(left, right)
         if not wanted:
             return ReachedPose(pose, 0.0)
         holds = self._four_legs and len(wanted) < len(self.arms)
@@ -164,6 +159,17 @@ class UpperBody:
         if holds:
             self._hold(local, frames, torso, hands[0], opened)
         return ReachedPose(Pose(pose.translations, local, pose.scales, pose.morphs), effort)
+
+    def wanted_hands(
+        self, left: HandTarget | None, right: HandTarget | None
+    ) -> list[tuple[Arm, HandTarget]]:
+        """Return the arms whose hands are for something, each with what for."""
+        asked = {"left": left, "right": right}
+        return [
+            (arm, target)
+            for side, arm in self.arms.items()
+            if (target := asked[side]) is not None and target.weight > 0.0
+        ]
 
     def effort(self, pose: Pose, place: Sequence[float] | Array) -> float:
         """Return the effort to bring a palm to a place, (3,) in the character frame [m].

@@ -80,13 +80,8 @@ class WholeBody:
         self, pose: Pose, left: HandTarget | None = None, right: HandTarget | None = None
     ) -> "PlacedBody | None":
         """Return the body in a pose, with what its hands are for; None if they are for nothing."""
-        asked = {"left": left, "right": right}
         upper = self.upper
-        wanted = [
-            (arm, target)
-            for side, arm in upper.arms.items()
-            if (target := asked[side]) is not None and target.weight > 0.0
-        ]
+        wanted = upper.wanted_hands(left, right)
         if not wanted:
             return None
         frames = upper.kinematics.frames(pose, "all")
@@ -244,13 +239,17 @@ class PlacedBody:
 
     def _pull(self, hand: HandOnItsWay) -> Pull:
         """Return what a hand pulls with."""
-        collar = hand.arm.joints[0]
-        base = hand.shoulder
-        if collar >= 0:
-            base = self.frames.places[self.body.upper.kinematics.number[collar]]
+        base = self._collar_base(hand) or hand.shoulder  # which moves only with the chest
         # What is only pointed to does not pull: the arm is as long as it is.
         weight = 0.0 if hand.target.kind == "point" else hand.target.weight
         return Pull(hand.arm, hand.effector.fore, base, hand.shoulder, hand.place, weight)
+
+    def _collar_base(self, hand: HandOnItsWay) -> Vector | None:
+        """Return where the collarbone of a hand begins; None if its body has none."""
+        collar = hand.arm.joints[0]
+        if collar < 0:
+            return None
+        return self.frames.places[self.body.upper.kinematics.number[collar]]
 
     def _seen(self, hand: HandOnItsWay, settled: Settled) -> HandOnItsWay:
         """Return a hand as the pelvis sees it, with its collarbone turned."""
@@ -263,10 +262,9 @@ class PlacedBody:
             )
             target = replace(target, palm=palm, fingers=fingers)
         place = seen_from_pelvis(hand.place, self.tree, settled)
-        collar, shoulder, swung = hand.arm.joints[0], hand.shoulder, IDENTITY
-        if collar >= 0:
+        base, shoulder, swung = self._collar_base(hand), hand.shoulder, IDENTITY
+        if base is not None:
             swung = from_rotation_vector(settled.collar(hand.arm.hand.side))
-            base = self.frames.places[self.body.upper.kinematics.number[collar]]
             shoulder = add(base, rotate(swung, subtract(shoulder, base)))
         return hand._replace(target=target, place=place, shoulder=shoulder, swung=swung)
 
