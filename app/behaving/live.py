@@ -28,7 +28,7 @@ from cubeling.characters.speech import blood_of
 MAX_FRAME_DOCUMENTS = 16
 """Documents that are read and scheduled for one frame; others wait for the next one."""
 
-MAX_FRAME_BYTES = 1 << 13
+MAX_FRAME_BYTES = 1 << 12
 """Size of documents after which no other one is read for a frame [B]."""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -108,6 +108,7 @@ def read_schedule(file: Path, body: Character | None = None, seed: int = 0) -> S
     return reader.read(SCHEDULE_FILE.read(file), str(file))
 
 
+@lru_cache(maxsize=1)
 def _body(character: str) -> Character:
     from cubeling.characters import Character
     from cubeling.characters.model import with_root_joint

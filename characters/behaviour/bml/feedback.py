@@ -150,7 +150,7 @@ def _head(feedback: Feedback) -> str:
 
 def _attributes(**values: str | float) -> str:
     return " ".join(
-        f"{name}={quoteattr(value if isinstance(value, str) else f'{value:.6g}')}"
+        f"{name}={quoteattr(value)}" if isinstance(value, str) else f'{name}="{value:.6g}"'
         for name, value in values.items()
         if value != float("inf")
     )

@@ -114,10 +114,18 @@ class GesturePlayback:
         """Return whether nothing of it is left at a time [s]."""
         return self.moment(now) >= self._own.end
 
+    def is_under_way(self, now: float) -> bool:
+        """Return whether something of it is to be seen at a time [s]."""
+        return self._own.start < self.moment(now) < self._own.end
+
+    def cover(self, step: float) -> None:
+        """Let it go by a step of 0…1 as others cover it; one that has not begun does not begin."""
+        self.present = 0.0 if self._motion is None else max(self.present - step, 0.0)
+
     def over(self, pose: Pose, now: float, share: float) -> Pose:
         """Return a pose with the gesture laid over it; `share` of it is shown, 0…1."""
         moment = self.moment(now)
-        if not self._own.start < moment < self._own.end:
+        if self.present <= 0.0 or not self._own.start < moment < self._own.end:
             return pose
         if self._motion is None:  # it goes on from what the arms do now
             start = pose.rotations[self._planning.joints.arms]

@@ -25,6 +25,10 @@ HANDS_FREE = {"idle": 1.0, "walk": 1.0, "run": 0.5}
 FREE_LAG_S = 0.15
 """Lag with which hands become free, and are taken [s]."""
 
+SHOWN_AT_ONCE = 4
+"""Gestures that are performed at once, those that began last: they cover the others, and each costs
+the time of planning its postures."""
+
 
 class GestureLayer:
     """Performs gestures; it comes after speech, whose gestures it hides, and before gaze."""
@@ -40,7 +44,8 @@ class GestureLayer:
         self._free = low_pass(self._free, self._hands_free(context), context.elapsed, FREE_LAG_S)
         if not self._active and (asked is None or not asked.gestures):
             return pose
-        self._follow(asked or BehaviourIntent(), now, context.elapsed)
+        going = self._follow(asked or BehaviourIntent(), now)
+        self._share_out(going, now, context.elapsed / FADE_S)
         for each in self._active:
             pose = each.over(pose, now, self._free)
         return pose
@@ -50,8 +55,8 @@ class GestureLayer:
             return float(context.rest > STANDING_REST)
         return HANDS_FREE.get(context.frame.state, 0.0)
 
-    def _follow(self, asked: BehaviourIntent, now: float, elapsed: float) -> None:
-        """Begin what is new, re-time what has changed, and let go what is left out."""
+    def _follow(self, asked: BehaviourIntent, now: float) -> "set[GesturePlayback]":
+        """Begin what is new and re-time what has changed; return what is asked for."""
         known = list(self._active)
         going: list[GesturePlayback] = []
         for intent in asked.gestures:
@@ -61,12 +66,24 @@ class GestureLayer:
             else:
                 known.remove(each)
             each.retime(intent, now)
-            each.present = min(each.present + elapsed / FADE_S, 1.0)
             going.append(each)
-        for each in known:
-            each.present -= elapsed / FADE_S
-        left = [each for each in known if each.present > 0.0 and not each.is_over(now)]
-        self._active = [*left, *going]
+        self._active = [*known, *going]
+        return set(going)
+
+    def _share_out(self, going: "set[GesturePlayback]", now: float, step: float) -> None:
+        """Let join in what is asked for and not covered, and let go the rest."""
+        under_way = [each for each in self._active if each.is_under_way(now)]
+        covered = set(under_way[:-SHOWN_AT_ONCE])
+        for each in self._active:
+            if each in covered:
+                each.cover(step)
+            else:
+                each.present = min(each.present + (step if each in going else -step), 1.0)
+        self._active = [
+            each
+            for each in self._active
+            if each in going or (each.present > 0.0 and not each.is_over(now))
+        ]
 
     def _begin(
         self,

@@ -8,11 +8,11 @@ import pytest
 
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.gestures.planning import GestureRealizer
+from cubeling.characters.behaviour.gestures.planning import GesturePlanning, GestureRealizer
 from cubeling.characters.behaviour.gestures.timing import PhaseTimes, natural_times
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
-from cubeling.characters.control.layers.gestures import GestureLayer
+from cubeling.characters.control.layers.gestures import SHOWN_AT_ONCE, GestureLayer
 from cubeling.characters.control.layers.sitting_up import SittingUpLayer
 from tests.examples import some
 
@@ -199,6 +199,36 @@ def test_a_gesture_goes_on_from_the_one_before(human, performer):
     low = heights[(shown >= next_times.ready) & (shown < next_times.ready + 0.05)].min()
     assert heights[between].min() > low - 0.1 * (low - hanging)
     assert _largest_step(poses) < MAX_STEP_DEG
+
+
+def _all_of(count, starts, ends):
+    """Return what asks for `count` gestures that differ, each from its start to its end."""
+    intents = [
+        GestureIntent(f"g{i}", replace(LIFT, name=f"LIFT{i}"), natural_times(LIFT, start))
+        for i, start in zip(range(count), starts, strict=True)
+    ]
+
+    def at(now):
+        asked = (each for each, end in zip(intents, ends, strict=True) if now < end)
+        return BehaviourIntent(tuple(asked))
+
+    return at
+
+
+def test_of_many_gestures_at_once_the_last_few_are_planned(human, monkeypatch):
+    planned = []
+    motion = GesturePlanning.motion
+    monkeypatch.setattr(GesturePlanning, "motion", lambda *of: planned.append(of[0]) or motion(*of))
+    _play(human, _all_of(60, [0.1] * 60, [99.0] * 60), 0.4)
+    assert len(planned) == SHOWN_AT_ONCE
+
+
+def test_a_gesture_that_later_ones_cover_goes_and_comes_back_without_a_jump(human):
+    starts, ends = [0.1, *[0.5] * 6], [99.0, *[0.9] * 6]
+    _, poses = _play(human, _all_of(7, starts, ends), 1.6)
+    _, alone = _play(human, _all_of(1, [0.1], [99.0]), 1.6)
+    assert _largest_step(poses) < MAX_STEP_DEG
+    np.testing.assert_allclose(poses[-1].rotations, alone[-1].rotations, atol=1e-6)
 
 
 def test_a_body_with_one_arm_performs_with_that_one(human):
