@@ -44,6 +44,11 @@ def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(CostCheck(in_ci and not of_all_examples), "cost")
 
 
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """Return one process more than there are cores: some tests wait for a robot or a window."""
+    return (os.cpu_count() or 1) + 1
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _one_copy_of_each_room() -> Generator[None, None, None]:
     """Fail if a test imported `tracking` for `cubeling.tracking`: its classes would be others."""

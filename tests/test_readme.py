@@ -28,6 +28,7 @@ def test_the_page_is_short():
     assert len(README.split()) <= MOST_WORDS
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="it draws a picture and a clip, as the page does")
 def test_a_picture_and_a_clip_are_drawn(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -85,6 +85,7 @@ def test_no_bundled_cube_is_seen_in_any_photograph(path: Path) -> None:
             assert not any(state.visible for state in states)
 
 
+@pytest.mark.full
 def test_markers_on_a_real_sheet_have_the_same_pose() -> None:
     """Six markers, each a cube of its own, know nothing of each other; the paper is flat.
 
@@ -120,6 +121,7 @@ def board() -> tuple[dict[int, Array], Array]:
     return places, se3.pose(rotation, np.asarray(shift, np.float64).ravel())
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("count", some([2, 17]))
 @pytest.mark.slow(reason="each marker is looked for as a cube of its own")
 def test_single_markers_of_a_real_board_are_right_or_refused(count: int) -> None:
@@ -147,6 +149,7 @@ def flat_model(places: dict[int, Array], numbers: list[int]) -> tuple[CubeModel,
     return CubeModel("board", DICTIONARY, 0.03, 0.02, faces), body
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="the whole picture is searched for twelve bodies")
 def test_edges_on_a_real_board_agree_with_its_chessboard() -> None:
     """Six markers of 20 mm at 40 cm, found by their edges, and 24 chessboard corners by OpenCV."""

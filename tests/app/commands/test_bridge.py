@@ -68,6 +68,7 @@ def companion(scripted_session: Callable[[str], Path]) -> Path:
     return scripted_session("companion")
 
 
+@pytest.mark.full
 def test_a_recorded_session_drives_robots_without_a_broker(companion):
     robots = {"rex": "sim", "max": "sim:cubeling?seed=2"}
     with Network() as network, Bridge(network, robots, {"ann": companion}) as bridge:

@@ -101,6 +101,7 @@ def test_a_check_says_whether_a_file_is_still_right(shown, waved, tmp_path):
     assert "DEGRADED  worse.yaml: focal length -2." in out
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="the coach wants to see the cube from all sides")
 def test_a_live_session_ends_by_itself_when_the_coach_is_content(shown, waved):
     endless = [

@@ -115,6 +115,7 @@ def test_a_character_stands_as_the_person(anna: Path) -> None:
         assert least <= np.mean(np.abs(aside) > 0.045) <= most
 
 
+@pytest.mark.full
 def test_a_smaller_character_stands_so_too(anna: Path) -> None:
     human = Character.load("human")
     rest = human.skeleton.rest

@@ -67,6 +67,7 @@ def straight(short_session):
     return player.messages()
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a session is computed twice")
 def test_after_a_seek_everything_is_as_if_all_frames_had_been_shown(play, straight):
     player = play(

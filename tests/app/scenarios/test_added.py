@@ -77,6 +77,7 @@ def test_the_example_of_the_page_waves_and_cheers(install, hand):
     assert [action(controls) for controls in hand.wait(3.0)][-1] == "idle"
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="four seconds are tracked")
 def test_the_example_of_the_page_is_listed_and_plays(install, cubeling, lifting_session):
     install(TOML, PYTHON)

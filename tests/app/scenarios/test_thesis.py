@@ -32,6 +32,7 @@ def whole_turn():
         ]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", SPEED_MAPS)
 def test_speed_over_a_whole_turn_goes_idle_walk_run_walk_idle(whole_turn, name):
     speeds = [SPEED_MAPS[name](controls.camera_angle) for controls, _ in whole_turn]

@@ -222,6 +222,7 @@ def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
     assert last[middle].mean() > before[middle].mean() + 50, "no card lies over the last picture"
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="two demos are rendered")
 def test_the_demo_writes_over_its_own_video_and_over_others_only_when_asked(
     cubeling, short_session, monkeypatch

@@ -160,6 +160,7 @@ def balls():
     return TracedScene(load("balls"), SIZE, 16)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("estimator", some(ESTIMATORS, 2))
 def test_two_lines_miss_less_of_the_full_form_than_one_with_as_many_samples(
     ctx, programs, balls, estimator
@@ -178,6 +179,7 @@ def test_two_lines_miss_less_of_the_full_form_than_one_with_as_many_samples(
     buffer.release()
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("samples", some([11, 21]))
 def test_two_lines_are_closer_to_a_dense_disc_than_one_with_as_many_samples(
     ctx, programs, balls, samples
@@ -214,6 +216,7 @@ def corner():
     return TracedScene(load("corner"), (319, 241), 32)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", some(["corner", "human", "vleo"]))
 def test_the_default_settings_are_close_to_ray_traced_pictures(ctx, programs, corner, name):
     traced = corner if name == "corner" else TracedScene(load(name), (320, 240), 32)

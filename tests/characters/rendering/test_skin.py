@@ -82,6 +82,7 @@ def test_what_is_not_skin_is_not_touched(scattered):
     assert np.array_equal(found.scattered[other][:, :3], found.diffuse[other][:, :3])
 
 
+@pytest.mark.full
 def test_open_skin_is_filtered_with_fewer_taps(scattered):
     shapes = (plate(DEEP, side=0.2), ball(DEEP), ball(DEEP, (0.07, 0.03, 0.02), 0.03))
     whole = scattered(*shapes, shadows=True)

@@ -64,6 +64,7 @@ def penumbra(texels, side):
     return np.interp(0.9, edge, x) - np.interp(0.1, edge, x)
 
 
+@pytest.mark.full
 def test_the_penumbra_grows_as_the_law_says(left):
     """A lamp of width w gives 0.8 (dR - dB) w / dB between 10 and 90 %."""
     for height in (0.03, 0.06, 0.09):
@@ -119,6 +120,7 @@ def test_who_is_inside_a_cube_does_not_coarsen_the_shadow_on_the_table(ctx, view
     stage.release()
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a picture is lit from the whole lamp in each pixel")
 def test_close_up_the_light_of_the_lamp_is_found_for_cells_nearly_as_for_each_pixel(
     ctx, monkeypatch

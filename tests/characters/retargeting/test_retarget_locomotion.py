@@ -68,6 +68,7 @@ def taught(human):
     return make_locomotion(bare, [exported(human, "Walk")], [exported(human, "Run", 3.2)])
 
 
+@pytest.mark.full
 def test_the_cycle_of_a_recording_is_found(human, taught):
     for found, name in zip(taught.recordings, ("Walk", "Run"), strict=True):
         clip = human.clips[name]
@@ -156,6 +157,7 @@ def test_it_goes_where_it_is_sent(taught):
     assert math.hypot(x - 0.25, z + 0.2) < 0.07
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="two recordings are retargeted to a walk and its curves")
 @pytest.mark.usefixtures("one_curve")
 def test_a_recorded_curve_is_used_for_its_side_and_mirrored_for_the_other(human):
@@ -253,6 +255,7 @@ def test_motion_capture_makes_locomotion_clips_without_sliding(tmp_path, curves,
     assert posed.table_from_character[2, 3] > 0.1
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="the walk is looked for in a recording of many seconds")
 @pytest.mark.usefixtures("straight_only")
 def test_a_walk_with_standing_and_turning_around_it_is_found():
@@ -284,6 +287,7 @@ def test_a_made_idle_faces_ahead_and_stands_over_its_root(human, taught, size):
     assert np.abs(at[[0, 2]]).max() < 0.05
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="two walks are made of recordings")
 @pytest.mark.usefixtures("straight_only")
 def test_made_clips_look_ahead_though_the_neck_was_recorded_straight(human):

@@ -419,6 +419,7 @@ def beginning(path: Path, frames: int, folder: Path) -> Path:
     return shorter
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a recording of a person is retargeted and analysed")
 @pytest.mark.skipif(not IDLE.is_dir(), reason="needs shared/data/idle")
 @pytest.mark.parametrize(("frames", "shifts"), some([(720, 8), (3110, 20)]))

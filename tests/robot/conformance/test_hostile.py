@@ -123,6 +123,7 @@ def test_when_time_is_up_the_other_checks_are_skipped_and_the_robot_does_not_con
     assert not report.conforms
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="all checks are run")
 def test_a_robot_that_takes_five_seconds_for_an_emotion_has_time_enough(monkeypatch):
     monkeypatch.setattr(body, "MAX_EMOTION_SPEED", 0.31)
@@ -212,6 +213,7 @@ class HasAJointOfSpeedZero(Mutant):
         super().send_message(session, message)
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="all checks are run")
 def test_a_joint_of_speed_zero_is_a_failed_check():
     report = run_checks(SimulatedChannel(HasAJointOfSpeedZero()), all_checks(), 1)

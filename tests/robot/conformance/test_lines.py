@@ -88,6 +88,7 @@ class BusyComputer(SlowLine):
         return super().read(until)
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="all checks are run over a line of 115 200 baud")
 def test_a_check_that_fails_on_a_busy_computer_is_retried():
     report = run_checks(BusyComputer(0.0, 0.001), all_checks(), 1)

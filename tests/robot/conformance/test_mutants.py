@@ -78,6 +78,7 @@ def test_a_planted_fault_fails_the_check_that_is_made_for_it(check: str):
         assert check in failures(robot, checks)
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="robots of all versions are tested for a sample of faults")
 @pytest.mark.parametrize("version", some(sorted(VERSIONS, reverse=True)))
 def test_a_sample_of_the_planted_faults_is_found(version: int):
@@ -101,6 +102,7 @@ def test_a_fault_that_does_not_fit_the_firmware_is_refused():
         pass
 
 
+@pytest.mark.full
 def test_a_mutant_without_a_mutation_passes():
     assert failures(Mutant(), all_checks()) == []
 

@@ -191,6 +191,7 @@ def board_picture(board, rays, pose):
     return cv2.cvtColor(cv2.GaussianBlur(seen, (0, 0), 0.6), cv2.COLOR_GRAY2BGR)
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a camera is calibrated from 12 drawn pictures")
 def test_waving_a_board_determines_the_lens():
     matrix = np.array([[610.0, 0, 325], [0, 611, 236], [0, 0, 1]])

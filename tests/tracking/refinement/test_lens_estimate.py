@@ -76,6 +76,7 @@ def test_a_lens_that_claims_zero_is_measured_in_play(k1: float) -> None:
     assert lens.off
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="pictures are drawn and bent")
 def test_a_lens_that_may_bend_costs_nothing_where_it_does_not() -> None:
     """Beside one that is known to be straight; where the lens bends, the doubt helps."""
@@ -94,6 +95,7 @@ def median_error(claimed: float, k1: float) -> float:
     return float(np.median(errors))
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a lens is known after some thirty places")
 @pytest.mark.parametrize("k1", some([K1, 0.0]))
 def test_an_honest_lens_is_believed(k1: float) -> None:

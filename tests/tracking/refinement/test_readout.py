@@ -42,6 +42,7 @@ def learned(readout: float) -> ReadoutEstimator:
     return estimator
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="pictures are drawn row by row")
 def test_the_time_of_a_rolling_shutter_is_measured() -> None:
     assert learned(READOUT_S).seconds == pytest.approx(READOUT_S, abs=0.003)

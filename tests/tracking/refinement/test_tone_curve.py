@@ -164,6 +164,7 @@ def in_linear_light() -> Clip:
     return Clip(CubeModel.load(scene.cube), projection, shots)
 
 
+@pytest.mark.full
 def test_the_exponent_of_images_in_linear_light_is_found(in_linear_light: Clip) -> None:
     camera = CameraModelEstimator()
     in_linear_light.learn(camera)

@@ -98,6 +98,7 @@ def subjects_of_script(_):
     ]
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="most of a session is played")
 @pytest.mark.parametrize("subjects_of", some([subjects_of_script, subjects_of_recording]))
 def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card(

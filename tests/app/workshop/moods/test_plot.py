@@ -42,6 +42,7 @@ def test_the_plot_names_who_feels_again_and_in_whose_words(history, companion, t
     assert "observed on the robot" not in words
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("suffix", some(["svg", "pdf", "png"]))
 def test_the_same_session_gives_the_same_plot_byte_for_byte(history, companion, tmp_path, suffix):
     paths = tmp_path / f"m.{suffix}", tmp_path / f"again.{suffix}"
@@ -50,6 +51,7 @@ def test_the_same_session_gives_the_same_plot_byte_for_byte(history, companion, 
     assert paths[0].read_bytes() == paths[1].read_bytes()
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a plot is written twice, and the page is drawn")
 def test_the_same_plot_as_pdf_and_png(history, companion, tmp_path):
     for suffix in ("pdf", "png"):
@@ -64,6 +66,7 @@ def test_the_same_plot_as_pdf_and_png(history, companion, tmp_path):
     assert pixels.std() > 10
 
 
+@pytest.mark.full
 def test_the_plot_of_a_long_session_is_a_small_file(history, companion, tmp_path):
     """Points that change no line are left out: half an hour takes about as much as a minute."""
     times = 44

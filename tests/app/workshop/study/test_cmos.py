@@ -66,6 +66,7 @@ def test_swapping_the_videos_turns_the_score_round(own):
     assert low <= own.mean <= high
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="scipy.stats is imported, here only, as that takes a second")
 @given(votes)
 def test_the_signed_rank_test_is_that_of_scipy(own):

@@ -118,6 +118,7 @@ def test_a_hand_of_another_colour_is_found_after_the_first():
     assert np.median(scores[-10:]) > 0.65
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="the frames of a film are drawn")
 def test_fingers_on_the_cube_from_the_beginning_are_not_taken_for_its_paper():
     view = HandView(SKINS["Monk 03"], azimuth_deg=-165, seed=4, gradient=0.5, defocus=0.8)
@@ -135,17 +136,20 @@ def test_a_hand_from_the_beginning_stays_when_it_hides_no_face_any_more():
     assert overlap_in(view, 49, begin=46, size=FILM) > 0.85  # no smaller
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="the frames of a film are drawn")
 def test_a_wall_in_the_colours_of_a_hand_from_the_beginning_is_no_part_of_it():
     assert overlap_in(HandView(SKINS["Monk 03"], azimuth_deg=-60, seed=2), 38, begin=25) > 0.8
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="the frames of a film are drawn")
 def test_the_sleeve_of_a_hand_that_is_there_from_the_beginning_is_found_when_it_moves():
     view = HandView(SKINS["Monk 09"], azimuth_deg=-120, seed=3, defocus=1.2)
     assert overlap_in(view, 42, begin=22) > 0.8
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(("exposure", "warmth"), some([(-0.5, 0.0), (-0.2, 0.08), (0.4, 0.0)]))
 def test_a_camera_that_reacts_to_the_hand_does_not_hide_it(exposure, warmth):
     view = HandView(SKINS["Monk 02"], azimuth_deg=-60, seed=2, exposure=exposure, warmth=warmth)
@@ -265,10 +269,12 @@ def test_a_keyboard_that_moves_by_a_pixel_is_no_hand(shift_px):
         assert finder.update(photograph(light, seed=index), state_at(pose)) is None
 
 
+@pytest.mark.full
 def test_skin_in_the_colour_of_the_desk_is_found_by_its_texture():
     assert overlap_in(HandView("a07e56", azimuth_deg=0, seed=2), 28) > 0.75
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("skin", some(["f6ede4", "292420"]))
 def test_fingers_in_the_colours_of_print_are_found(skin):
     view = HandView(skin, azimuth_deg=-165, seed=4, gradient=0.5)
@@ -314,6 +320,7 @@ def test_what_the_first_hand_hides_for_a_moment_is_not_taken_for_a_hand_later():
     assert not covered(mask, SHAPE)[150:184, 664:690].any()
 
 
+@pytest.mark.full
 def test_dark_fingers_on_ink_are_told_by_their_chroma():
     view = HandView("3a312a", azimuth_deg=-165, seed=4, gradient=0.5)
     assert overlap_in(view, 26) > 0.95

@@ -109,6 +109,7 @@ def test_a_hand_is_looked_at_when_a_lost_cube_is_found_again(last):
     assert not last.carry(POSE, 0.03)
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a film at a camera's rate is drawn and tracked")
 def test_a_carried_hand_covers_the_same_as_one_that_is_looked_at():
     view = HandView(SKINS["Monk 07"], azimuth_deg=-60, seed=2, tapping=True)
