@@ -1,5 +1,6 @@
 """Motions with skeleton and anatomy, read from files."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -47,6 +48,7 @@ def load_recording(
     up: str | None = None,
     rest: str | None = None,
     rate: float | None = None,
+    load: Callable[[str], Character] = Character.load,
 ) -> Recording:
     """Read a motion: a .bvh, .amc or .vrma file, a .glb without a mesh, or a character's clip.
 
@@ -64,9 +66,10 @@ def load_recording(
     rest
         The rest pose of a motion without a body: "zero" or "frame:N"; left out, the zero pose if
         it stands, else the most upright frame.
-
     rate
         Frame rate of a .bvh or .amc file [Hz]; left out, what it states.
+    load
+        Reads a character; one that keeps them reads the clips of one file faster.
 
     Raises
     ------
@@ -77,7 +80,7 @@ def load_recording(
     if is_motion_only(file):
         motion = load_motion(file, clip or None, skeleton=skeleton, rate=rate, up=up)
         return _of_recorded_motion(name, motion, rest)
-    character = Character.load(file)
+    character = load(file)
     if not clip and len(character.clips) == 1:
         clip = next(iter(character.clips))
     if clip not in character.clips:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -91,15 +91,18 @@ def read_schedule(file: Path, body: Character | None = None, seed: int = 0) -> S
     AppError, CharacterError
         It cannot be read, is no schedule, or names what is not there.
     """
-    from cubeling.characters import dependent_joints_of, safe_ranges_of
+    from cubeling.characters import Character, dependent_joints_of, safe_ranges_of
     from cubeling.characters.motion import ScheduleReader
 
     mover = body or _body("human")
+    # Thousands of actions may name one file: it is read once.
+    load = cache(Character.load)
+    motion = cache(lambda name: _motion(name, mover, load))
     reader = ScheduleReader(
         mover.skeleton,
         mover.anatomy,
-        lambda name: _motion(_beside(file, name), mover),
-        lambda name: _idle(file, name, mover, seed),
+        lambda name: motion(_beside(file, name)),
+        cache(lambda name: _idle(file, name, mover, seed)),
         {
             "dependentjoints": lambda: dependent_joints_of(mover).move,
             "selfcollision": lambda: safe_ranges_of(mover).keep,
@@ -136,13 +139,13 @@ def _beside(file: Path, name: str) -> str:
     return f"{beside}{mark}{clip}" if beside.exists() else name
 
 
-def _motion(name: str, body: Character) -> Motion:
+def _motion(name: str, body: Character, load: Callable[[str], Character]) -> Motion:
     """Return the motion of a file or clip, retargeted if it is on another skeleton."""
     from cubeling.characters import read_motions
     from cubeling.characters.model import load_recording, with_bind_pose
     from cubeling.characters.motion import skeleton_identity
 
-    recording = load_recording(name)
+    recording = load_recording(name, load=load)
     same = skeleton_identity(recording.skeleton) == skeleton_identity(with_bind_pose(body))
     return recording.clip if same else read_motions([name], body)[0]
 

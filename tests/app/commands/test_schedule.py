@@ -7,6 +7,7 @@ import av
 import numpy as np
 import pytest
 
+from cubeling.app.commands.make.schedule import read_schedule
 from cubeling.characters import Character, load_motion
 
 EXAMPLES = Path(__file__).parents[3] / "docs" / "schedules"
@@ -91,3 +92,18 @@ def test_refuses_in_one_line(cubeling, tmp_path, text, message) -> None:
     assert message in error
     assert error.count("\n") == 1
     assert not (tmp_path / "schedule.bvh").exists()
+
+
+def test_a_file_that_many_actions_name_is_read_once(tmp_path, monkeypatch) -> None:
+    action = """<blendingaction id="{0}"><blendingparams type="joints"><default weight="1.0"/>
+    </blendingparams><blendableobject type="keyframebodyanimation">human#{1}</blendableobject>
+    </blendingaction>"""
+    clips = "idle", "wave", "nod"
+    pool = "".join(action.format(number, clips[number % 3]) for number in range(30))
+    order = "".join(f'<activate id="{number}" offset="0.0"/>' for number in range(30))
+    path = tmp_path / "many.xml"
+    path.write_text(f"<blendingschedule><actionpool>{pool}</actionpool>{order}</blendingschedule>")
+    human, read = Character.load("human"), []
+    monkeypatch.setattr(Character, "load", staticmethod(lambda name: read.append(name) or human))
+    assert len(read_schedule(path, human).actions) == 30
+    assert read == ["human"]
