@@ -11,11 +11,9 @@ THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET = 25, 5
 """A dark pixel is this many grey levels below the mean of this window. Larger dark cells become
 hollow but keep their borders; dark rooms need a small offset, noise a larger one."""
 
-MIN_OUTLINE_PX = 56
-"""Length of the outline of the smallest blob: a marker of 14 px."""
-
-MIN_BLOB_EXTENT_PX = 12
-"""Smallest extent of a blob along rows and columns: noise and lines of text are thinner."""
+MIN_BLOB_EXTENT_PX, MIN_BLOB_EXTENTS_PX = 12, 30
+"""Smallest extent of a blob along rows and columns, as noise and lines of text are thinner, and sum
+of both: a marker of 14 px."""
 
 MAX_DEVIATION_PX = 1.6
 """How far an outline may deviate from a straight segment."""
@@ -23,8 +21,9 @@ MAX_DEVIATION_PX = 1.6
 MIN_SEGMENT_PX = 7.0
 """Length of the shortest segment."""
 
-MIN_CONTRAST = 12.0
-"""Least difference of the grey levels on both sides of a border."""
+MIN_CONTRAST, CONTRAST_WINDOW_PX = 12.0, 9
+"""Least difference of the grey levels on both sides of a border, and the window around a dark pixel
+in which something is brighter by so much. What lies on even surfaces costs most of the time."""
 
 MAX_SEGMENTS = 80
 """Segments of one blob that are combined, the longest first."""
@@ -65,17 +64,11 @@ class BorderSegments:
 
 def find_border_segments(grey: Image) -> BorderSegments:
     """Find the straight borders of the dark blobs in a grey image, (H, W), slightly blurred."""
-    window = (THRESHOLD_WINDOW_PX, THRESHOLD_WINDOW_PX)
-    mean = cv2.blur(grey, window, borderType=cv2.BORDER_REPLICATE)
-    # The same as cv2.adaptiveThreshold, which is not vectorized.
-    darker = cv2.subtract(mean, grey)
-    dark = cv2.threshold(darker, THRESHOLD_OFFSET - 1, 255, cv2.THRESH_BINARY)[1]
-    outlines = cv2.findContours(dark, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)[0]
+    outlines = cv2.findContoursLinkRuns(_dark_pixels(grey))[0]
     loops = [
         cv2.approxPolyDP(outline, MAX_DEVIATION_PX, True)[:, 0]
         for outline in outlines
-        if len(outline) >= MIN_OUTLINE_PX
-        and min(cv2.boundingRect(outline)[2:]) >= MIN_BLOB_EXTENT_PX
+        if _is_large(outline)
     ]
     if not loops:
         return BorderSegments(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.intp))
@@ -83,10 +76,31 @@ def find_border_segments(grey: Image) -> BorderSegments:
     points = np.concatenate(loops).astype(np.float64)
     following = np.arange(1, len(points) + 1)
     following[np.cumsum(counts) - 1] -= counts
-    # OpenCV goes around a blob with the dark side on the left (y down): reverse all segments.
-    segments = BorderSegments(points[following], points, np.repeat(np.arange(len(loops)), counts))
+    # OpenCV's link runs go around a blob with the dark side on the right (y down).
+    segments = BorderSegments(points, points[following], np.repeat(np.arange(len(loops)), counts))
     segments = segments.select(segments.length >= MIN_SEGMENT_PX)
     return _longest(segments.select(_has_contrast(segments, grey)))
+
+
+def _dark_pixels(grey: Image) -> Image:
+    """Return 255 where a pixel is darker than those around it, and not only by noise, else 0."""
+    window = (THRESHOLD_WINDOW_PX, THRESHOLD_WINDOW_PX)
+    mean = cv2.blur(grey, window, borderType=cv2.BORDER_REPLICATE)
+    # The same as cv2.adaptiveThreshold, which is not vectorized.
+    darker = cv2.subtract(mean, grey)
+    dark = cv2.threshold(darker, THRESHOLD_OFFSET - 1, 255, cv2.THRESH_BINARY)[1]
+    brightest = cv2.dilate(grey, np.ones((CONTRAST_WINDOW_PX, CONTRAST_WINDOW_PX), np.uint8))
+    contrast = cv2.subtract(brightest, grey)
+    stands_out = cv2.threshold(contrast, MIN_CONTRAST - 1, 255, cv2.THRESH_BINARY)[1]
+    return np.asarray(cv2.bitwise_and(dark, stands_out), np.uint8)
+
+
+def _is_large(outline: Array) -> bool:
+    """Whether an outline, (N, 1, 2), is that of a blob as large as a marker."""
+    if len(outline) < MIN_BLOB_EXTENT_PX:  # at least one point in each row
+        return False
+    width, height = cv2.boundingRect(outline)[2:]
+    return min(width, height) >= MIN_BLOB_EXTENT_PX and width + height >= MIN_BLOB_EXTENTS_PX
 
 
 def _has_contrast(segments: BorderSegments, grey: Image) -> Flags:

@@ -19,6 +19,9 @@ MIN_FACING_COSINE = 0.05
 MAX_PROPOSED_ERROR, MAX_REFINED_ERROR = 0.15, 0.06
 """A marker agrees with a proposed pose, and with a refined one, within this share of its side."""
 
+MAX_LAST_STEP = 2e-5
+"""A step smaller than this is the last one [m, rad]: corners are not that exact."""
+
 MIN_TOLERANCE_PX = 2.0
 """Corners closer than this agree in any case."""
 
@@ -183,7 +186,7 @@ class CornerPoseSolver:
             flat = rows.reshape(-1, 6)
             step = np.linalg.solve(weighted.T @ flat, weighted.T @ residuals.ravel())
             current = se3.apply_delta(current, step)
-            if np.abs(step).max() < 1e-6:
+            if np.abs(step).max() < MAX_LAST_STEP:
                 break
         residuals, rows = self._linearise(current, points, corners)
         squares = float((residuals**2).sum())

@@ -73,8 +73,7 @@ class SmearedPatterns:
 def _smeared_patterns(dictionary: str, marker_ids: tuple[int, ...], count: int) -> Floats:
     """Return every marker in four rotations with every blur, (markers · 4, smears, count²).
 
-    Drawing them takes 0.1 s: they are drawn when a quad is first compared with them, and all
-    trackers of a cube share them.
+    They are drawn when a quad is first compared with them, and all trackers of a cube share them.
     """
     cells = [marker_cells(dictionary, number) for number in marker_ids]
     smeared = [_smear(each, count) for each in cells]
@@ -86,15 +85,13 @@ def _smeared_patterns(dictionary: str, marker_ids: tuple[int, ...], count: int) 
 
 def _smear(black: Flags, count: int) -> Floats:
     """Draw a marker with every blur, (smears, count²)."""
-    cell = SAMPLES_PER_CELL * TEXELS_PER_SAMPLE
-    white = np.kron((~black).astype(np.float32), np.ones((cell, cell), np.float32))
-    margin = round((count * TEXELS_PER_SAMPLE - len(white)) / 2)
-    fine = np.asarray(np.pad(white, margin, constant_values=1.0), np.float32)
-    angles, drawn = np.arange(DIRECTIONS) * np.pi / DIRECTIONS, []
-    for length, angle in ((0.0, 0.0), *product(SMEARS_CELLS, angles)):
-        blurred = cv2.filter2D(fine, cv2.CV_32F, _kernel(length * cell, angle),
-                               borderType=cv2.BORDER_REPLICATE)  # fmt: skip
-        drawn.append(cv2.resize(blurred, (count, count), interpolation=cv2.INTER_AREA).ravel())
+    fine = np.kron((~black).astype(np.float32), np.ones((SAMPLES_PER_CELL,) * 2, np.float32))
+    white = np.asarray(np.pad(fine, round((count - len(fine)) / 2), constant_values=1.0))
+    angles, cell = np.arange(DIRECTIONS) * np.pi / DIRECTIONS, SAMPLES_PER_CELL * TEXELS_PER_SAMPLE
+    blurs = ((0.0, 0.0), *product(SMEARS_CELLS, angles))
+    kernels = [_sampled_kernel(length * cell, angle) for length, angle in blurs]
+    border = cv2.BORDER_REPLICATE
+    drawn = [cv2.filter2D(white, cv2.CV_32F, each, borderType=border).ravel() for each in kernels]
     return np.asarray(drawn, np.float32)
 
 
@@ -109,15 +106,30 @@ def _turn(smeared: Floats, turn: int, count: int) -> Floats:
 
 
 @cache
+def _sampled_kernel(length: float, angle: float) -> Floats:
+    """Return the same blur from sample to sample, which shows squares of even texels exactly.
+
+    A sample is the mean of its texels: each texel of the kernel takes as much of a neighbour as
+    its square covers, moved by that texel.
+    """
+    texels = _kernel(length, angle)
+    reach = len(texels) // 2
+    samples = -(-reach // TEXELS_PER_SAMPLE) + 1
+    moved = np.arange(-reach, reach + 1)[:, None]
+    apart = np.arange(-samples, samples + 1) * TEXELS_PER_SAMPLE - moved
+    covered = np.maximum(1 - np.abs(apart) / TEXELS_PER_SAMPLE, 0.0)
+    return np.asarray(covered.T @ texels @ covered, np.float32)
+
+
+@cache
 def _kernel(length: float, angle: float) -> Floats:
     """Smear by a line of a length and direction [texels, rad], softened as the detector's image."""
     reach = int(length / 2) + 3
     kernel = np.zeros((2 * reach + 1, 2 * reach + 1), np.float32)
-    for share in np.linspace(-0.5, 0.5, 4 * reach):
-        x, y = np.rint(reach + share * length * np.array([np.cos(angle), np.sin(angle)])).astype(
-            int
-        )
-        kernel[y, x] += 1
+    along = length * np.array([np.cos(angle), np.sin(angle)])
+    steps = np.linspace(-0.5, 0.5, 4 * reach)[:, None] * along
+    x, y = np.rint(reach + steps).astype(np.intp).T
+    np.add.at(kernel, (y, x), 1)
     soft = np.asarray(cv2.GaussianBlur(kernel, (0, 0), TEXELS_PER_SAMPLE / 2), np.float32)
     return np.asarray(soft / soft.sum(), np.float32)
 

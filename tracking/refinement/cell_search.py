@@ -96,10 +96,13 @@ class CellMatch:
         )
 
 
-Step = Literal["look", "align", "align coarsely", "weigh", "join", "measure", "flatten", ""]
+Step = Literal[
+    "look", "align", "align coarsely", "weigh", "join", "weigh joined", "measure", "weigh measured",
+    "flatten", "",
+]  # fmt: skip
 """A step of a search; "" after the last one."""
 
-EFFORT = {"align coarsely": 3, "join": 2, "measure": 3}
+EFFORT = {"align coarsely": 3, "join": 2, "measure": 2}
 """How many times as long as the others some steps take."""
 
 
@@ -130,6 +133,9 @@ class CellRun:
 
     exact: bool = False
     """As in `CellSearch.begin`."""
+
+    joined: StillAlignment | None = None
+    """The pose that other faces, which are seen as well, agree on too; still to be weighed."""
 
     alone: bool = False
     """Whether it has looked for other faces than those that were read, and sees none."""
@@ -203,7 +209,11 @@ class CellSearch:
             return self._weigh_all(run)
         if run.step == "join":
             return self._join(run)
-        return self._measure(run) if run.step == "measure" else self._flatten(run)
+        if run.step == "weigh joined":
+            return self._weigh_joined(run)
+        if run.step == "measure":
+            return self._measure(run)
+        return self._weigh_measured(run) if run.step == "weigh measured" else self._flatten(run)
 
     def _look(self, run: CellRun) -> CellRun:
         """Look which other faces are seen where the search begins: these are aligned at once."""
@@ -265,15 +275,23 @@ class CellSearch:
         ).end_if_known()
 
     def _join(self, run: CellRun) -> CellRun:
-        """Align all faces that are seen, where that explains more."""
+        """Align all faces that are seen."""
         patch, aligned, match = run.patch, run.aligned, run.match
         assert patch is not None
         assert aligned is not None
         assert match is not None
-        joint = self._aligner.realign(patch, aligned, _faces_to_add(match))
-        again = self._weigh(patch, joint) if joint else None
-        if joint and again and again.evidence.total > match.evidence.total:
-            run = replace(run, aligned=joint, match=again)
+        joined = self._aligner.realign(patch, aligned, _faces_to_add(match))
+        return replace(run, joined=joined, step="weigh joined" if joined else "measure")
+
+    def _weigh_joined(self, run: CellRun) -> CellRun:
+        """Take the pose of all faces that are seen, where that explains more."""
+        patch, joined, match = run.patch, run.joined, run.match
+        assert patch is not None
+        assert joined is not None
+        assert match is not None
+        again = self._weigh(patch, joined)
+        if again and again.evidence.total > match.evidence.total:
+            run = replace(run, aligned=joined, match=again)
         return replace(run, step="measure").end_if_known()
 
     def _measure(self, run: CellRun) -> CellRun:
@@ -281,11 +299,17 @@ class CellSearch:
         patch, aligned = run.patch, run.aligned
         assert patch is not None
         assert aligned is not None
-        faces = aligned.correlations
-        aligned = self._aligner.realign(patch, aligned, faces, fine=True) or aligned
+        measured = self._aligner.realign(patch, aligned, aligned.correlations, fine=True)
+        return replace(run, aligned=measured or aligned, step="weigh measured")
+
+    def _weigh_measured(self, run: CellRun) -> CellRun:
+        """Weigh the measured pose with as many samples."""
+        patch, aligned = run.patch, run.aligned
+        assert patch is not None
+        assert aligned is not None
         match = self._weigh(patch, aligned, fine=True)
-        if len(faces) == 1:
-            return replace(run, aligned=aligned, match=match, step="flatten")
+        if len(aligned.correlations) == 1:
+            return replace(run, match=match, step="flatten")
         return replace(run, match=match and replace(match, alignment=aligned), step="")
 
     def _flatten(self, run: CellRun) -> CellRun:

@@ -348,7 +348,7 @@ def _in_order(starts: list[_Start]) -> list[_Start]:
         run = start[1]
         if run is None:
             return 1, 0.0
-        if run.step == "measure" and run.match:
+        if run.step in ("measure", "weigh measured") and run.match:
             return 3, -run.match.evidence.total
         return 2 * (run.alone and run.step == "align"), 0.0
 

@@ -9,8 +9,8 @@ from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.arrays import Array, Floats, Indices
 from cubeling.tracking.refinement.photometry.texels import frequencies
 
-TEXELS_PER_CELL = 8
-"""Texels along a cell."""
+TEXELS_PER_CELL, SMALL_TEXELS_PER_CELL = 8, 4
+"""Texels along a cell, and along one that is so small in the image that a lens blurs it anyway."""
 
 PAPER_CELLS = 2
 """Cells of white paper around a marker, which let the blur wrap around."""
@@ -41,15 +41,15 @@ class DrawnMarkers:
 class MarkerTextures:
     """Textures of the markers of all faces, from black 0 to white 1, and how they change."""
 
-    def __init__(self, cube: CubeModel) -> None:
+    def __init__(self, cube: CubeModel, texels_per_cell: int) -> None:
         cells = [marker_cells(cube.dictionary, face.marker_id) for face in cube.faces]
         white = np.pad(~np.stack(cells), ((0, 0), *[(PAPER_CELLS, PAPER_CELLS)] * 2),
                        constant_values=True)  # fmt: skip
-        ones = np.ones((1, TEXELS_PER_CELL, TEXELS_PER_CELL), np.float32)
+        ones = np.ones((1, texels_per_cell, texels_per_cell), np.float32)
         textures = np.kron(white.astype(np.float32), ones)
         self.side = textures.shape[1]
         """Texels along each side of a texture."""
-        self.texel = cube.marker_size / len(cells[0]) / TEXELS_PER_CELL
+        self.texel = cube.marker_size / len(cells[0]) / texels_per_cell
         """Size of a texel [m]."""
         self._spectra = _spectrum(textures)
         # By how much the texture brightens where every border moves by a texel into the black.
@@ -69,7 +69,7 @@ class MarkerTextures:
         `texels_to_pixels` and `variance` are as in `DrawnMarkers`. Markers of `last` are taken from
         there where they have the same blur and nearly the same slant.
         """
-        known = [] if last is None else _known(last, faces, texels_to_pixels, variance)
+        known = [] if last is None else _known(last, faces, texels_to_pixels, variance, self.side)
         if last is not None and known == list(range(len(last.faces))):
             return last
         layers = np.empty((5, len(faces), self.side, self.side), np.float32)
@@ -105,10 +105,10 @@ class MarkerTextures:
 
 
 def _known(
-    last: DrawnMarkers, faces: Indices, texels_to_pixels: Array, variance: float
+    last: DrawnMarkers, faces: Indices, texels_to_pixels: Array, variance: float, side: int
 ) -> list[int]:
     """Find each face among those that were drawn alike; −1 where it was not."""
-    if last.variance != variance:
+    if last.variance != variance or last.layers.shape[-1] != side:
         return [-1] * len(faces)
     same = last.faces == faces[:, None]
     change = np.abs(last.texels_to_pixels - texels_to_pixels[:, None]).max(axis=(2, 3))

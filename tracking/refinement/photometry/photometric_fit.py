@@ -1,6 +1,8 @@
 """Least squares between the rendered mixture of black and white and the image."""
 
 from dataclasses import dataclass
+from functools import cache, cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -30,7 +32,7 @@ class PhotometricSamples:
     """Rendered and measured values of the samples in view."""
 
     face: Indices
-    """Index of each sample's face, 0 for the first in view, (N,)."""
+    """Index of each sample's face, 0 for the first in view, ascending, (N,)."""
 
     block: Indices
     """Index of its block: the errors of one block are not independent, (N,)."""
@@ -53,8 +55,15 @@ class PhotometricFit:
     samples: PhotometricSamples
     """Points of the cube whose brightness was compared."""
 
-    rows: Array
-    """Jacobian of the residual: pose, the K others, then the tones, (N, 6 + K + tones)."""
+    own_rows: Array
+    """Jacobian of the residual: pose, the K others, then the tones of the sample's own face and the
+    bend of mixtures, (6 + K + 3 or 5, N)."""
+
+    columns: Indices
+    """Which unknowns these are of, for each face, (faces, 6 + K + 3 or 5)."""
+
+    bounds: Indices
+    """Where the samples of each face begin, and where the last end, (faces + 1,)."""
 
     normal: Array
     """Their normal matrix without priors."""
@@ -97,9 +106,12 @@ class PhotometricFit:
         # numpy sorts integers of 16 bits by their digits, in a tenth of the time.
         order = np.argsort(self.samples.block.astype(np.uint16), kind="stable")
         starts = run_starts(self.samples.block[order])
-        weighted = self.rows.T * (self.weights * self.residual)
-        scores = np.add.reduceat(weighted[:, order], starts, axis=1).T @ inverse[:, :end]
-        count, used = len(starts), self.rows.shape[1] / 2
+        weighted = self.own_rows * (self.weights * self.residual)
+        by_block = np.add.reduceat(weighted[:, order], starts, axis=1).T
+        # All samples of a block lie on one face.
+        columns = self.columns[self.samples.face[order[starts]]]
+        scores = np.einsum("br,brk->bk", by_block, inverse[columns, :end])
+        count, used = len(starts), len(self.normal) / 2
         spread = scores.T @ scores * (count / max(count - used, 1.0))
         own = inverse[:end, 6:end] / prior
         # A few blocks cannot span all directions: add a share of the independent covariance.
@@ -132,13 +144,13 @@ class PhotometricFit:
 
         A finger covers the others.
         """
-        weight = self.light * (self.weights * self.scale**2)
-        count = self.light.sum(axis=1)
+        weight = self._light * (self.weights * self.scale**2)
+        count = self._light.sum(axis=1)
         return np.stack([self._alike(weight), weight.sum(axis=1) / np.maximum(count, 1)], axis=1)
 
     def correlations_within(self, chosen: Flags) -> Array:
         """Correlation of rendering and image over some samples, (N,), for each face, (faces,)."""
-        return self._alike(self.light * chosen)
+        return self._alike(self._light * chosen)
 
     def block_evidence(self, blocks: int) -> Array:
         """How well the rendering explains each block of each face, (faces, blocks).
@@ -161,19 +173,20 @@ class PhotometricFit:
         `cells` is the cell of each sample on its face, 0 to `count` − 1, or −1 for none, (N,).
         """
         found = np.zeros(self.faces)
-        for face, contrast in enumerate(self.tones[self.faces : 2 * self.faces]):
-            of = np.flatnonzero((self.light[face] > 0) & (cells >= 0))
+        contrasts = self.tones[self.faces : 2 * self.faces]
+        for face, (begin, end) in enumerate(pairwise(self.bounds.tolist())):
+            of = begin + np.flatnonzero(cells[begin:end] >= 0)
             samples = np.bincount(cells[of], minlength=count)
             off = np.bincount(cells[of], self.residual[of], count) / np.maximum(samples, 1)
-            found[face] = np.count_nonzero(np.abs(off) > WRONG_SHARE * abs(contrast))
+            found[face] = np.count_nonzero(np.abs(off) > WRONG_SHARE * abs(contrasts[face]))
         return found
 
     @property
     def correlations(self) -> Array:
         """Correlation of rendering and image, over all and for each face; NaN if not in view."""
         overall = _correlations(self.even, self.even - self.residual, np.ones((1, len(self.even))))
-        each = self._alike(self.light)
-        each[self.light.sum(axis=1) <= MIN_FACE_SAMPLES] = np.nan
+        each = self._alike(self._light)
+        each[self._light.sum(axis=1) <= MIN_FACE_SAMPLES] = np.nan
         return np.concatenate([overall, each])
 
     def _alike(self, weights: Array) -> Array:
@@ -183,10 +196,13 @@ class PhotometricFit:
         found[np.count_nonzero(weights, axis=1) <= MIN_FACE_SAMPLES] = 0.0
         return found
 
-    @property
-    def light(self) -> Array:
+    @cached_property
+    def _light(self) -> Array:
         """Which samples lie on each face: 1 or 0, (faces, N)."""
-        return self.rows.T[-len(self.tones) :][: self.faces]
+        light = np.zeros((self.faces, len(self.residual)))
+        for face, (begin, end) in enumerate(pairwise(self.bounds.tolist())):
+            light[face, begin:end] = 1.0
+        return light
 
     def _with(self, prior: Array) -> Array:
         normal = self.normal.copy()
@@ -242,22 +258,24 @@ def fit_tones(
     `places` are those of the samples on their faces, −1…1, (N, 2), if the light of a face may
     have a slope.
     """
-    rendered, seen = samples.rendered, samples.seen
-    count, flat = samples.jacobian.shape[1], 2 * faces + 1
-    slopes = 0 if places is None else 2 * faces
-    # One property of all samples after the other is faster than one sample after the other.
-    rows = np.empty((count + flat + slopes, len(seen)))
-    rows_of_tones, used = rows[count:], rows[count : count + flat]
-    light = rows_of_tones[:faces]
-    light[:] = samples.face == np.arange(faces)[:, None]
-    np.multiply(light, rendered, out=used[faces : 2 * faces])
-    np.multiply(rendered, 1 - rendered, out=used[-1])
-    weighted, scale = used, 1.0
+    rendered, seen, tilted = samples.rendered, samples.seen, places is not None
+    bounds = np.searchsorted(samples.face, np.arange(faces + 1))
+    count, sizes = samples.jacobian.shape[1], np.diff(bounds)
+    # The unknowns of one face's samples; one property of all samples after the other is faster
+    # than one sample after the other.
+    rows = np.empty((count + (5 if tilted else 3), len(seen)))
+    all_columns = _columns(faces, count, tilted)
+    columns = all_columns[:, count:] - count
+    of_tones = rows[count:]
+    of_tones[0], of_tones[1] = 1.0, rendered
+    np.multiply(rendered, 1 - rendered, out=of_tones[2])
+    used, weighted, scale = 3, of_tones[:3], 1.0
     for last in (False, True):
-        normal = weighted @ used.T
+        of = columns[:, :used]
+        normal, right_side = _summed(weighted, of_tones[:used], seen, of, bounds)
         normal.flat[:: len(normal) + 1] += 1e-3
-        tones = np.linalg.solve(normal, weighted @ seen)
-        residual = seen - tones @ used
+        tones = np.linalg.solve(normal, right_side)
+        residual = seen - _mixed(tones[of], of_tones[:used], bounds)
         scale = 1.4826 * quantile(np.abs(residual), 0.5) + 0.3
         contrast = float(tones[faces : 2 * faces].max())
         cut = max(MAX_RESIDUAL_SIGMAS * scale, MIN_CUT_SHARE * contrast)
@@ -266,19 +284,59 @@ def fit_tones(
             break
         if places is not None:
             # A slope of the light changes black and white by the same share.
-            sloping = (seen - residual) * places.T
-            np.multiply(light, sloping[:, None], out=rows_of_tones[flat:].reshape(2, faces, -1))
-            used = rows_of_tones
-        weighted = used * robust
-    even = seen - tones[flat:] @ rows_of_tones[flat:]
-    strength = tones[faces : 2 * faces] @ light + tones[2 * faces] * (1 - 2 * rendered)
+            np.multiply(seen - residual, places.T, out=of_tones[3:])
+            used = 5
+        weighted = of_tones[:used] * robust
+    even = seen - _mixed(tones[columns[:, 3:]], of_tones[3:], bounds)
+    strength = np.repeat(tones[faces : 2 * faces], sizes) + tones[2 * faces] * (1 - 2 * rendered)
     np.multiply(samples.jacobian.T, strength, out=rows[:count])
     weights = robust / scale**2
-    weighted = rows * weights
+    normal, right_side = _summed(rows * weights, rows, residual, all_columns, bounds)
     return PhotometricFit(
-        samples, rows.T, weighted @ rows.T, weighted @ residual, faces, tones, even, residual,
+        samples, rows, all_columns, bounds, normal, right_side, faces, tones, even, residual,
         weights, scale,
     )  # fmt: skip
+
+
+@cache
+def _columns(faces: int, count: int, tilted: bool) -> Indices:
+    """Return `PhotometricFit.columns` for samples with `count` unknowns beside the tones.
+
+    The tones are black, white minus black, the bend of mixtures, which all faces share, and, if the
+    light is `tilted`, its two slopes.
+    """
+    face = count + np.arange(faces)[:, None]
+    pose = np.tile(np.arange(count), (faces, 1))
+    bend = np.full((faces, 1), count + 2 * faces)
+    slopes = [2 * faces + 1 + face, 3 * faces + 1 + face] if tilted else []
+    return np.hstack([pose, face, faces + face, bend, *slopes])
+
+
+def _mixed(tones: Array, rows: Array, bounds: Indices) -> Array:
+    """Return the sum of rows, (R, N), each times the tones of the sample's face, (faces, R)."""
+    mixed = np.empty(rows.shape[1])
+    for own, (begin, end) in zip(tones, pairwise(bounds.tolist()), strict=True):
+        np.matmul(own, rows[:, begin:end], out=mixed[begin:end])
+    return mixed
+
+
+def _summed(
+    weighted: Array, rows: Array, values: Array, columns: Indices, bounds: Indices
+) -> tuple[Array, Array]:
+    """Return normal matrix and right-hand side over the samples of all faces.
+
+    `rows` and `weighted`, (R, N), are those of each sample's own unknowns, whose numbers are
+    `columns`, (faces, R).
+    """
+    if len(columns) == 1:
+        return weighted @ rows.T, weighted @ values
+    size = int(columns.max()) + 1
+    normal, right_side = np.zeros((size, size)), np.zeros(size)
+    for of, (begin, end) in zip(columns, pairwise(bounds.tolist()), strict=True):
+        own = weighted[:, begin:end]
+        normal[of[:, None], of] += own @ rows[:, begin:end].T
+        right_side[of] += own @ values[begin:end]
+    return normal, right_side
 
 
 def _correlations(a: Array, b: Array, weights: Array) -> Array:

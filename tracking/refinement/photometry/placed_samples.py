@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cubeling.tracking.cube.faces import FacePlanes, face_frame
+from cubeling.tracking.cube.marker import cell_size
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.arrays import Array, Indices
 from cubeling.tracking.geometry.image_region import Patch
 from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection, radial_bend
-from cubeling.tracking.refinement.photometry.marker_images import TEXELS_PER_CELL
 from cubeling.tracking.refinement.photometry.texels import (
     SampleGrid,
     bend_slides,
@@ -61,8 +61,9 @@ class PlacedSamples:
     stretches: Array
     """How it moves by the radial distortion k1, (2, N) [texels]."""
 
-    lifts: Array
-    """How the texels of all samples move by the bends of their faces, (faces, 2, 3, samples)."""
+    lifts: Array | None
+    """How the texels of all samples move by the bends of their faces, (faces, 2, 3, samples); None
+    where several flat ones are compared."""
 
     bend_errors: Array
     """How bent each face seems where its cells are moved by `CELL_ERROR_PX`, (faces,) [m]."""
@@ -89,7 +90,7 @@ class SamplePlacer:
         self.texel = texel
         """Size of a texel [m]."""
         paper = PAPER_SHARE * (cube.white - cube.marker_size) / 2
-        self.reach = cube.marker_size / 2 + min(MARGIN_CELLS * TEXELS_PER_CELL * texel, paper)
+        self.reach = cube.marker_size / 2 + min(MARGIN_CELLS * cell_size(cube), paper)
         """How far from the middle of a face there are samples [m]."""
         self._projection = projection
         self._frames = np.stack([face_frame(face) for face in cube.faces])
@@ -99,11 +100,12 @@ class SamplePlacer:
         )
 
     def place(
-        self, patch: Patch, pose: Array, faces: Collection[str] | None, fine: bool
+        self, patch: Patch, pose: Array, faces: Collection[str] | None, fine: bool, bent: bool
     ) -> PlacedSamples | None:
         """Place samples on `faces`, or on all, that look at the camera at a pose, (4, 4).
 
-        None where too few of them are in the patch. `fine` takes more samples.
+        None where too few of them are in the patch. `fine` takes more samples. `bent` is whether
+        several faces are taken to be bent; a single one always may be.
         """
         grid = self._fine if fine else self._coarse
         names = self.faces.names
@@ -131,7 +133,9 @@ class SamplePlacer:
         by_k1 = by_k1.transpose(0, 2, 1)
         x, y = (points[:, 2] * by_k1.transpose(1, 0, 2)).reshape(2, -1)
         stretches = x * slides[:, 0] + y * slides[:, 1]
-        lifts = bend_slides(frames, rays, grid.places) / self.texel
+        lifts = None
+        if bent or len(facing) == 1:
+            lifts = bend_slides(frames, rays, grid.places) / self.texel
         to_pixels = texels_to_pixels(self._projection, frames, self.texel)
         ray = np.linalg.inv(frames)[:, :3, 3]
         moved = (to_pixels / self.texel @ (ray[:, :2] / ray[:, 2:])[..., None])[..., 0]
@@ -155,6 +159,6 @@ class SamplePlacer:
             rays = np.concatenate([rays[:, :2] - k1 * placed.by_k1, rays[:, 2:]], axis=1)
         met = np.linalg.inv(planes) @ rays
         found = met[:, :2] / met[:, 2:] / self.texel
-        if bends[placed.facing].any():
+        if placed.lifts is not None and bends[placed.facing].any():
             found += np.einsum("fdks,fk->fds", placed.lifts, bends[placed.facing])
         return np.asarray(found, np.float64)

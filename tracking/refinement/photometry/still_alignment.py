@@ -8,10 +8,12 @@ it needs no cell wider than the blur.
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
 
+from cubeling.tracking.cube.marker import cell_size
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.geometry.arrays import Array, Indices
@@ -19,6 +21,7 @@ from cubeling.tracking.geometry.image_region import Patch
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.evidence import Evidence
 from cubeling.tracking.refinement.photometry.marker_images import (
+    SMALL_TEXELS_PER_CELL,
     TEXELS_PER_CELL,
     DrawnMarkers,
     MarkerTextures,
@@ -30,6 +33,7 @@ from cubeling.tracking.refinement.photometry.photometric_fit import (
 )
 from cubeling.tracking.refinement.photometry.placed_samples import (
     BLOCKS_PER_SIDE,
+    MIN_FACING_COSINE,
     PlacedSamples,
     SamplePlacer,
 )
@@ -60,8 +64,12 @@ of its own in all pictures, of up to 0.023."""
 NO_ERROR = 1e-6
 """Standard deviation of what is known."""
 
-MAX_STEPS, CONVERGED_PX, MAX_SLIDE_PX = 12, 0.01, 1.5
+MAX_STEPS, CONVERGED_PX, MAX_SLIDE_PX = 12, 0.03, 1.5
 """Steps at most, the length of the last, and from which length on the samples are placed again."""
+
+MAX_SMALL_CELL_PX, MIN_SMALL_FACES = 3.0, 3
+"""Cells smaller than this are rendered with fewer texels where so many faces are compared: their
+pose is not measured with more samples afterwards."""
 
 REDRAW_RATIO = 1.6
 """The markers are drawn again, with the blur found so far, where its variance has changed by more
@@ -77,9 +85,6 @@ class StillAlignment:
 
     camera_from_cube: Array
     """Pose of the cube, (4, 4) [m]."""
-
-    covariance: Array
-    """Of a pose delta, (6, 6), by the residuals."""
 
     blur: float
     """Blur of the lens, one standard deviation [px]."""
@@ -114,18 +119,32 @@ class StillAlignment:
     markers: DrawnMarkers
     """What was rendered, so that the next alignment need not render it again."""
 
+    fit: PhotometricFit
+    """The last step of the alignment."""
+
+    prior: Array
+    """Standard deviations of its unknowns beside the pose, (K,)."""
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Of a pose delta, (6, 6), by the residuals."""
+        return self.fit.covariance(self.prior)[:6, :6]
+
 
 class StillAligner:
     """Aligns one cube seen by one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
-        self._textures = MarkerTextures(cube)
-        self._placer = SamplePlacer(cube, projection, self._textures.texel)
+        every = (MarkerTextures(cube, count) for count in (TEXELS_PER_CELL, SMALL_TEXELS_PER_CELL))
+        self._large, self._small = (
+            (textures, SamplePlacer(cube, projection, textures.texel)) for textures in every
+        )
+        self._placer = self._large[1]
         self._focal = float(projection.matrix[0, 0])
         self._k1_error = CLAIMED_K1 if projection.claims_no_distortion else NO_ERROR
         self._bend_errors = BEND_SHARES * cube.marker_size
         # The cells inside the border, as a share of the reach.
-        cell = self._textures.texel * TEXELS_PER_CELL
+        self._cell = cell = cell_size(cube)
         self._inner = (cube.marker_size / 2 - cell) / self._placer.reach
         self._cells = round(cube.marker_size / cell) ** 2
 
@@ -178,6 +197,7 @@ class StillAligner:
     ) -> StillAlignment | None:
         """Align from a pose with a blur, a k1, bends, and markers that were drawn before."""
         blur, k1, bends, markers = begin
+        textures, placer = self._small if self._is_small(start, faces) else self._large
         expected, optics = np.array([blur**2, 0.0, 0.0]), np.array([blur**2, 0.0, k1])
         optics_errors = BLUR_SPREAD_PX2 + blur**2 / 4, BLOOM_SPREAD_PX, self._k1_error
         prior = np.array([*optics_errors, *self._bend_errors / stiffness])
@@ -187,13 +207,14 @@ class StillAligner:
         placed: PlacedSamples | None = None
         for _ in range(steps):
             if placed is None or moved > MAX_SLIDE_PX:
-                placed = self._placer.place(patch, pose, faces, fine)
+                placed = placer.place(patch, pose, faces, fine, bent=bool(bends.any()))
                 if placed is None:
                     return None
             if not 1 / REDRAW_RATIO < optics[0] / drawn < REDRAW_RATIO:
                 drawn = float(optics[0])
-            markers = self._textures.draw(placed.facing, placed.texels_to_pixels, drawn, markers)
-            fit = self._fit(placed, markers, pose, optics - (drawn, 0.0, 0.0), bends)
+            markers = textures.draw(placed.facing, placed.texels_to_pixels, drawn, markers)
+            texels = placer.texels(placed, pose, optics[2], bends)
+            fit = _fit(placed, markers, texels, optics - (drawn, 0.0, 0.0))
             # The bend of a single face is estimated, too.
             lone = placed.facing[: len(placed.facing) == 1]
             off = np.concatenate([expected - optics, -bends[lone].ravel()])
@@ -207,38 +228,20 @@ class StillAligner:
                 break
         if placed is None or markers is None:
             return None
-        return self._summary(pose, optics, bends, placed, fit, prior, markers)
+        return self._summary(pose, optics, bends, placed, fit, prior, markers, textures.texel)
+
+    def _is_small(self, pose: Array, faces: Collection[str] | None) -> bool:
+        """Whether fewer texels do: for many small faces, which determine their pose together."""
+        if self._cell * self._focal > MAX_SMALL_CELL_PX * pose[2, 3]:
+            return False
+        facing = self._placer.faces.faces_towards(pose, MIN_FACING_COSINE)
+        names = self._placer.faces.names
+        return sum(faces is None or names[each] in faces for each in facing) >= MIN_SMALL_FACES
 
     def _slide_px(self, pose: Array, step: Array) -> float:
         """How far a step moves the image of a face at most [px]."""
         shift, turn = np.linalg.norm(step[:6].reshape(2, 3), axis=1)
         return float(shift + self._placer.reach * turn) * self._focal / float(pose[2, 3])
-
-    def _fit(
-        self, placed: PlacedSamples, markers: DrawnMarkers, pose: Array, optics: Array, bends: Array
-    ) -> PhotometricFit:
-        """Render the markers at a pose, with small changes of blur and bloom, and fit the light."""
-        side = self._textures.side
-        places = self._placer.texels(placed, pose, optics[2], bends) + (side - 1) / 2
-        places = np.clip(places, 0, side - 1)
-        places[:, 1] += (np.arange(len(placed.facing)) * side)[:, None]
-        x, y = places.astype(np.float32).transpose(1, 0, 2)
-        texel, right, down, by_blur, by_bloom = (
-            cv2.remap(each, x, y, cv2.INTER_LINEAR).ravel()[placed.used]
-            for each in markers.layers.reshape(5, -1, side)
-        )
-        lone = len(placed.facing) == 1
-        jacobian = np.empty((9 + 3 * lone, len(texel)))
-        np.multiply(placed.slides[0], right, out=jacobian[:6])
-        jacobian[:6] += placed.slides[1] * down
-        by_k1 = placed.stretches[0] * right + placed.stretches[1] * down
-        jacobian[6:9] = by_blur, by_bloom, by_k1
-        if lone:
-            by_right, by_down = placed.lifts[0][..., placed.used]
-            jacobian[9:] = by_right * right + by_down * down
-        rendered = texel + optics[:2] @ jacobian[6:8]
-        samples = PhotometricSamples(placed.face, placed.block, placed.values, rendered, jacobian.T)
-        return fit_tones(samples, len(placed.facing), placed.places)
 
     def _summary(
         self,
@@ -249,12 +252,14 @@ class StillAligner:
         fit: PhotometricFit,
         prior: Array,
         markers: DrawnMarkers,
+        texel: float,
     ) -> StillAlignment:
         names = [self._placer.faces.names[number] for number in placed.facing]
         alike = np.nan_to_num(fit.correlations[1:])
         cells, inner = self._inner_cells(placed)
-        side = 2 * self._placer.reach / self._textures.texel
-        area = np.abs(np.linalg.det(placed.texels_to_pixels)) * side**2
+        area = (
+            np.abs(np.linalg.det(placed.texels_to_pixels)) * (2 * self._placer.reach / texel) ** 2
+        )
         count = np.minimum(self._cells / CELLS_PER_MEASUREMENT, area / PIXELS_PER_MEASUREMENT)
         blocks = BLOCKS_PER_SIDE**2
         evidence = np.zeros((len(bends), blocks + BEND_BLOCKS))
@@ -264,7 +269,6 @@ class StillAligner:
         evidence[placed.facing, blocks:] = -cost[:, None] / BEND_BLOCKS
         return StillAlignment(
             pose,
-            fit.covariance(prior[: fit.samples.jacobian.shape[1] - 6])[:6, :6],
             float(np.sqrt(optics[0])),
             float(optics[1]),
             float(optics[2]),
@@ -276,6 +280,8 @@ class StillAligner:
             Evidence(evidence, float((bent / self._bend_errors**2).sum())),
             fit.scale / max(fit.contrast, 1.0),
             markers,
+            fit,
+            prior[: fit.samples.jacobian.shape[1] - 6],
         )
 
     def _inner_cells(self, placed: PlacedSamples) -> tuple[Indices, int]:
@@ -284,3 +290,33 @@ class StillAligner:
         column, row = np.floor((placed.places.T / self._inner + 1) / 2 * side).astype(np.intp)
         inside = (np.minimum(column, row) >= 0) & (np.maximum(column, row) < side)
         return np.where(inside, row * side + column, -1), side**2
+
+
+def _fit(
+    placed: PlacedSamples, markers: DrawnMarkers, texels: Array, optics: Array
+) -> PhotometricFit:
+    """Render the markers with small changes of blur and bloom, and fit the light.
+
+    `texels` are those under all samples, as `SamplePlacer.texels` returns them.
+    """
+    side = markers.layers.shape[-1]
+    places = np.clip(texels + (side - 1) / 2, 0, side - 1)
+    places[:, 1] += (np.arange(len(placed.facing)) * side)[:, None]
+    x, y = places.astype(np.float32).transpose(1, 0, 2)
+    texel, right, down, by_blur, by_bloom = (
+        cv2.remap(each, x, y, cv2.INTER_LINEAR).ravel()[placed.used]
+        for each in markers.layers.reshape(5, -1, side)
+    )
+    lone = len(placed.facing) == 1
+    jacobian = np.empty((9 + 3 * lone, len(texel)))
+    np.multiply(placed.slides[0], right, out=jacobian[:6])
+    jacobian[:6] += placed.slides[1] * down
+    by_k1 = placed.stretches[0] * right + placed.stretches[1] * down
+    jacobian[6:9] = by_blur, by_bloom, by_k1
+    if lone:
+        assert placed.lifts is not None
+        by_right, by_down = placed.lifts[0][..., placed.used]
+        jacobian[9:] = by_right * right + by_down * down
+    rendered = texel + optics[:2] @ jacobian[6:8]
+    samples = PhotometricSamples(placed.face, placed.block, placed.values, rendered, jacobian.T)
+    return fit_tones(samples, len(placed.facing), placed.places)
