@@ -50,6 +50,8 @@ class VirtualScreen:
         own = dict.fromkeys(("HOME", "XDG_CONFIG_HOME", "APPDATA"), folder)
         self.environment = {**os.environ, **own, "DISPLAY": self.display, "COLUMNS": "120"}
         """For programs that run on it."""
+        self.file = Path(folder) / "Xvfb_screen0"
+        """What it shows, for `screen_pixels`."""
 
     @staticmethod
     def installed() -> bool:
@@ -67,11 +69,15 @@ class VirtualScreen:
         self._folder.cleanup()
 
     def pixels(self) -> NDArray[np.uint8]:
-        """Return what it shows, (height, width, 4) BGRX, always as it is now.
+        """Return what it shows, (height, width, 4) BGRX, always as it is now."""
+        return screen_pixels(self.file)
 
-        The file is an X window dump: a header of big-endian numbers, a colour map, and the pixels.
-        """
-        path = Path(self._folder.name) / "Xvfb_screen0"
-        header = np.fromfile(path, ">u4", HEADER_FIELDS)
-        start, width, height, colors = (int(header[index]) for index in (0, 4, 5, 19))
-        return np.memmap(path, np.uint8, "r", start + 12 * colors, (height, width, 4))
+
+def screen_pixels(path: Path) -> NDArray[np.uint8]:
+    """Return what a virtual screen shows by its file, (height, width, 4) BGRX, always as it is now.
+
+    The file is an X window dump: a header of big-endian numbers, a colour map, and the pixels.
+    """
+    header = np.fromfile(path, ">u4", HEADER_FIELDS)
+    start, width, height, colors = (int(header[index]) for index in (0, 4, 5, 19))
+    return np.memmap(path, np.uint8, "r", start + 12 * colors, (height, width, 4))

@@ -168,9 +168,7 @@ def draw_panels() -> None:
 
         def save(step: Step) -> None:
             if step.frame.timestamp >= PANELS_TIME_S and not window.closed:
-                screen = window.context.detect_framebuffer(0)
-                shown = np.frombuffer(screen.read(), np.uint8).reshape(*screen.size[::-1], 3)
-                picture = np.ascontiguousarray(shown[::-1, :, ::-1])
+                picture = window.pixels()
                 quality = (cv2.IMWRITE_JPEG_QUALITY, 88)
                 cv2.imwrite(str(FOLDER / "panels.jpg"), picture, quality)
                 glfw.set_window_should_close(glfw.get_current_context(), True)

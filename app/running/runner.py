@@ -1,5 +1,6 @@
 """The loop of a session: frames in, pictures and emotions out, all of it recorded if asked for."""
 
+import gc
 import time
 from collections.abc import Callable
 
@@ -63,6 +64,7 @@ def run(
     except KeyboardInterrupt:
         summary.interrupted = True
     finally:
+        gc.unfreeze()
         runner.close()
     summary.robot_log = session.robot.log()
     summary.lens = lens_notice(
@@ -87,6 +89,7 @@ class _Runner:
         self._times = session.monitor.times
         self._start: float | None = None
         self._shown_at = 0.0
+        self._loaded = False
 
     def run(self) -> None:
         screen = self._session.screen
@@ -168,6 +171,10 @@ class _Runner:
             self._progress(step)
         self._times.lap("other")
         if drawn:
+            if not self._loaded:
+                # What is loaded stays: to search all of it for cycles takes as long as frames.
+                gc.freeze()
+                self._loaded = True
             self._times.end_frame()
         else:  # the times are those of the frames that are shown
             self._times.drop_frame()

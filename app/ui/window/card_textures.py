@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.ui.canvas import Card
+from cubeling.app.ui.window.kept_cards import KeptCards
 
 FRAGMENT_SHADER = """
 #version 330
@@ -31,15 +32,11 @@ class CardTextures:
             vertex_shader=vertex_shader, fragment_shader=FRAGMENT_SHADER
         )
         self._quad = context.vertex_array(self._program, [])
-        # A card is kept with its texture: its arrays are then those of no other card.
-        self._kept: dict[tuple[int, int], tuple[Card, moderngl.Texture]] = {}
-        self._used: dict[tuple[int, int], tuple[Card, moderngl.Texture]] = {}
+        self._kept = KeptCards(self._upload, lambda texture: texture.release())
 
     def begin(self) -> None:
         """Begin a picture: what the last one did not use is released."""
-        for key in self._kept.keys() - self._used.keys():
-            self._kept.pop(key)[1].release()
-        self._used = {}
+        self._kept.begin()
 
     def draw(
         self, cards: Sequence[Card], screen: moderngl.Framebuffer, left: int, top: int
@@ -51,20 +48,15 @@ class CardTextures:
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
         for card in cards:
-            key = id(card.color), id(card.opacity)
-            if key not in self._kept:
-                self._kept[key] = card, self._upload(card)
-            self._used[key] = kept = self._kept[key]
             height, width = card.opacity.shape
             screen.viewport = left + card.x, top - card.y - height, width, height
-            kept[1].use(0)
+            self._kept.of(card).use(0)
             self._quad.render(moderngl.TRIANGLE_STRIP, 4)
         self._context.disable(moderngl.BLEND)
 
     def release(self) -> None:
         """Release the textures and the shader."""
-        self._used = {}
-        self.begin()
+        self._kept.clear()
         self._quad.release()
         self._program.release()
 

@@ -14,7 +14,7 @@ class PictureWindow(Window):
         """Show a picture, (height, width, 3) BGR."""
         if not self.closed:
             self.paint(picture)
-            glfw.swap_buffers(self._window)
+            self._painter.show()
 
     def poll(self) -> None:
         """Process the window's events, unless it is closed."""

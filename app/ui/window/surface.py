@@ -4,39 +4,15 @@ import contextlib
 from collections.abc import Sequence
 from typing import Any, Self
 
-import cv2
 import glfw
-import moderngl
-import numpy as np
-from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.ui.canvas import Card
-from cubeling.app.ui.window.card_textures import CardTextures
-from cubeling.characters.rendering import create_context
-
-VERTEX_SHADER = """
-#version 330
-out vec2 place;
-void main() {
-    vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-    place = vec2(corner.x, 1.0 - corner.y);
-    gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
-}
-"""
-
-FRAGMENT_SHADER = """
-#version 330
-uniform sampler2D picture;
-uniform float brightness;
-uniform bool mirrored;
-in vec2 place;
-out vec4 color;
-void main() {
-    vec2 seen = mirrored ? vec2(1.0 - place.x, place.y) : place;
-    color = vec4(brightness * texture(picture, seen).bgr, 1.0);
-}
-"""
+from cubeling.app.ui.window.gl_painter import GLPainter
+from cubeling.app.ui.window.memory_painter import MemoryPainter
+from cubeling.app.ui.window.painter import Painter, Picture, Placement
+from cubeling.app.ui.window.shared_picture import SharedPicture
+from cubeling.characters.rendering import create_context, draws_in_software
 
 KEY_NAMES = {
     glfw.KEY_SPACE: "Space",
@@ -125,15 +101,9 @@ class WindowSurface:
         glfw.set_mouse_button_callback(self._window, self._on_button)
         self.context = create_context(window=True)
         """Where a `Stage` for this window draws."""
-        self._whole, self._card_origin = size, (0, 0)
-        self._texture = self.context.texture(size, 4)
-        # OpenCV adds the fourth channel in a quarter of the time that a software driver takes.
-        self._pixels = np.empty((size[1], size[0], 4), np.uint8)
-        self._cards = CardTextures(self.context, VERTEX_SHADER)
-        self._program = self.context.program(
-            vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER
-        )
-        self._quad = self.context.vertex_array(self._program, [])
+        self._whole = size
+        self._painter: Painter = GLPainter(self._window, self.context)
+        self._painters: tuple[Painter, ...] = (self._painter, *self._memory_painters())
         self._windowed_place = (0, 0, 0, 0)
         self._open = True
 
@@ -150,14 +120,15 @@ class WindowSurface:
 
     def paint(
         self,
-        picture: NDArray[np.uint8],
+        picture: Picture,
         cards: Sequence[Card] = (),
         below: int = 0,
         *,
         mirrored: bool = False,
         brightness: float = 1.0,
+        with_opengl: bool = False,
     ) -> None:
-        """Draw a picture into the back buffer, as large as it fits.
+        """Paint a picture, as large as it fits; `present` shows it.
 
         Parameters
         ----------
@@ -171,56 +142,47 @@ class WindowSurface:
             Whether it is seen as in a mirror; cards are not.
         brightness
             That of the picture, 0…1.
+        with_opengl
+            Whether the caller draws over it with OpenGL.
         """
         height, width = picture.shape[:2]
-        self._upload(picture)
         self._whole = width, height + below
-        screen = self.context.detect_framebuffer(0)
-        screen.use()
-        wide, high = self._framebuffer_size
-        screen.viewport = (0, 0, wide, high)
         left, bottom, whole_width, whole_height = self.picture_place(*self._whole)
-        # Without a graphics card, clearing what is drawn over takes a quarter of the time.
-        if (whole_width, whole_height) != (wide, high):
-            screen.clear(0.09, 0.10, 0.13)
-        shown_width, shown_height = self.shown_size(width, height, below)
-        top = bottom + whole_height
-        screen.viewport = (left, top - shown_height, shown_width, shown_height)
-        self.context.disable(moderngl.DEPTH_TEST | moderngl.BLEND | moderngl.CULL_FACE)
-        # Without a graphics card, filtering takes twice as long as copying.
-        exact = (shown_width, shown_height) == (width, height)
-        self._texture.filter = (moderngl.NEAREST if exact else moderngl.LINEAR,) * 2
-        self._texture.use(0)
-        self._program["mirrored"], self._program["brightness"] = mirrored, brightness
-        self._quad.render(moderngl.TRIANGLE_STRIP, 4)
-        self._card_origin = left, top
-        self._cards.begin()
+        window = self._framebuffer_size
+        place = Placement(
+            window,
+            left,
+            window[1] - bottom - whole_height,
+            (whole_width, whole_height),
+            self.shown_size(width, height, below),
+        )
+        self._painter = self._painters[0 if with_opengl else -1]
+        self._painter.paint(picture, place, mirrored=mirrored, brightness=brightness)
         self.paint_cards(cards)
 
     def paint_cards(self, cards: Sequence[Card]) -> None:
         """Draw cards over what was painted; after `paint`, over the picture that it has drawn."""
-        screen = self.context.detect_framebuffer(0)
-        screen.use()
-        self._cards.draw(cards, screen, *self._card_origin)
-        screen.viewport = (0, 0, *self._framebuffer_size)
+        self._painter.paint_cards(cards)
+
+    def pixels(self) -> Picture:
+        """Return what was painted last, (height, width, 3) BGR, before it is presented."""
+        return self._painter.pixels()
+
+    def _memory_painters(self) -> list[Painter]:
+        """Return what paints quicker than OpenGL where the processor draws."""
+        if not draws_in_software(self.context) or glfw.get_platform() != glfw.PLATFORM_X11:
+            return []
+        shared = SharedPicture.open(glfw.get_x11_window(self._window))
+        return [] if shared is None else [MemoryPainter(shared)]
 
     def shown_size(self, width: int, height: int, below: int = 0) -> tuple[int, int]:
         """Return width and height of a picture in the window [px], with so much room below it."""
         _, _, shown_width, whole_height = self.picture_place(width, height + below)
         return shown_width, round(whole_height * height / (height + below))
 
-    def _upload(self, picture: NDArray[np.uint8]) -> None:
-        height, width = picture.shape[:2]
-        if (width, height) != self._texture.size or self._pixels.shape[:2] != (height, width):
-            self._texture.release()
-            self._texture = self.context.texture((width, height), 4)
-            self._pixels = np.empty((height, width, 4), np.uint8)
-        cv2.cvtColor(picture, cv2.COLOR_BGR2BGRA, dst=self._pixels)
-        self._texture.write(self._pixels)
-
     def present(self) -> None:
         """Show what was drawn, and process events."""
-        glfw.swap_buffers(self._window)
+        self._painter.show()
         self.poll()
 
     def poll(self) -> None:
@@ -278,8 +240,8 @@ class WindowSurface:
             return
         self._open = False
         self.release()
-        for thing in (self._cards, self._quad, self._program, self._texture):
-            thing.release()
+        for painter in self._painters:
+            painter.release()
         self.context.release()
         glfw.destroy_window(self._window)
         glfw.terminate()

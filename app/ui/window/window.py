@@ -202,7 +202,14 @@ class Window(WindowSurface):
                     cards = self._cards_of(step, robot, size)
                 brightness = 1.0 if notice is None else DIMMED_BRIGHTNESS
                 mirrored = self._layer.mirrored
-                self.paint(step.picture, cards, below, mirrored=mirrored, brightness=brightness)
+                self.paint(
+                    step.picture,
+                    cards,
+                    below,
+                    mirrored=mirrored,
+                    brightness=brightness,
+                    with_opengl=self._panels is not None and self._panels.shown,
+                )
                 unit = size[1] / PICTURE_HEIGHT
                 over = self._layer.cards(size, [card.box(unit) for card in cards])
         self._draw_over(over)

@@ -16,6 +16,7 @@ from tests.virtual_screen import VirtualScreen
 
 SCRIPT = Path(__file__).with_name("window_script.py")
 REPLAY_SCRIPT = SCRIPT.with_name("replay_script.py")
+PAINTERS_SCRIPT = SCRIPT.with_name("painters_script.py")
 
 
 @pytest.fixture
@@ -25,6 +26,7 @@ def on_screen(tmp_path):
         pytest.skip("Xvfb is not installed")
     # Where the systems keep preferences; the tests look at them.
     folders = {name: str(tmp_path) for name in ("HOME", "XDG_CONFIG_HOME", "APPDATA")}
+    folders["PYTHONPATH"] = str(Path(__file__).parents[3])  # scripts import `tests`
     with VirtualScreen() as screen:
 
         def run(*arguments):
@@ -37,12 +39,19 @@ def on_screen(tmp_path):
                 timeout=120,
             )
 
+        run.screen = screen
         yield run
 
 
 @pytest.mark.slow(reason="a window is opened")
 def test_the_window_shows_the_picture_and_handles_keys(on_screen, bundled_session):
     done = on_screen(SCRIPT, bundled_session)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.slow(reason="a window is opened")
+def test_without_a_graphics_card_a_window_is_painted_in_memory_as_opengl_paints_it(on_screen):
+    done = on_screen(PAINTERS_SCRIPT, on_screen.screen.file)
     assert done.returncode == 0, done.stderr
 
 
