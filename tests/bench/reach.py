@@ -20,7 +20,7 @@ miss off, on
     Mean distance of the left palm from its place, by torso and arm, and by the tree, scaled to a
     person; and the share of places that are reached within a centimetre.
 feet
-    Largest distance that an ankle moves.
+    Largest distance that the ball of a foot moves, or an ankle of a foot that does not bend.
 mass
     Largest distance of the middle of hips and shoulders, as weighted by the tree, from the
     rectangle of the feet; 0 where it is over them.
@@ -175,7 +175,11 @@ def whole_row(character: Character) -> list[str]:
     checked = [*stance, *(arm.joints[0] for arm in body.arms.values() if arm.joints[0] >= 0)]
     limits = natural_limits(skeleton, character.anatomy)
     allowed = np.maximum(limits.excess(pose.rotations)[checked], np.radians(5.0))
-    ankles = [leg[2] for leg in kinematics.stance.legs]
+    standing_legs = kinematics.stance
+    feet = [
+        toe if toe >= 0 else leg[2]
+        for leg, toe in zip(standing_legs.legs, standing_legs.toes, strict=True)
+    ]
     misses, beyond, slips, leans = [], [], [0.0], [0.0]
     for place in grid(character):
         poses = body.reach(pose, HandTarget(place)), whole.reach(pose, HandTarget(place))
@@ -186,9 +190,9 @@ def whole_row(character: Character) -> list[str]:
             ]
         )
         beyond.append((limits.excess(poses[1].rotations)[checked] > allowed + 1e-6).any())
-        moved = poses[1].globals(skeleton)[ankles, :3, 3] - still[ankles]
+        moved = poses[1].globals(skeleton)[feet, :3, 3] - still[feet]
         slips.append(float(np.linalg.norm(moved, axis=-1).max(initial=0.0)) / metre)
-        if ankles and len(body.arms) > 1:
+        if feet and len(body.arms) > 1:
             leans.append(over_feet(character, poses[1], still) / metre)
     off, on = np.array(misses).T
     shares = [f"{(each < MAX_MISS_MM).mean():.0%}" for each in (off, on)]

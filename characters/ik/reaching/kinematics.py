@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.characters.ik.heels import angle_at
 from cubeling.characters.ik.reaching.arms import Arm, to_quaternion, turns_of
 from cubeling.characters.ik.reaching.stance import StandingLegs
 from cubeling.characters.ik.reaching.torso import FOUR_LEGS, PlacedTorso
@@ -64,6 +65,11 @@ class UpperBodyKinematics:
         rest = skeleton.rest.globals(skeleton)
         self.height = float(np.ptp(rest[:, 1, 3]))
         """From the lowest joint at rest to the highest one [m]."""
+        self.ankle_angles = [
+            angle_at(*(tuple(rest[joint, :3, 3].tolist()) for joint in (ankle, knee, toe)))
+            for (_, knee, ankle), toe in zip(self.stance.legs, self.stance.toes, strict=True)
+        ]
+        """Between shin and foot at rest, of each leg [rad]."""
         self._rest = [to_quaternion(turn) for turn in turns_of(rest[order, :3, :3])]
         self._sizes = _scales_above(rest, self._order, skeleton)
         self.trunk_joints = np.array(trunk, np.intp)

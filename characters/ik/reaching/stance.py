@@ -20,6 +20,9 @@ class StandingLegs:
     legs: tuple[tuple[int, ...], ...] = ()
     """Hip, knee and ankle of both legs; none if the pelvis is not known."""
 
+    toes: tuple[int, ...] = ()
+    """The toes of both, where the foot bends; −1 of a foot without."""
+
     neck: tuple[int, ...] = ()
     """From the neck to the head."""
 
@@ -27,6 +30,7 @@ class StandingLegs:
     def joints(self) -> list[int]:
         """The joints of legs and neck, and the pelvis if there are legs to stand on."""
         legs = [joint for leg in self.legs for joint in leg]
+        legs += [joint for joint in self.toes if joint >= 0]
         return [*legs, *self.neck, *([self.pelvis] if self.legs else [])]
 
     @classmethod
@@ -50,4 +54,8 @@ class StandingLegs:
             knee not in chains[ankle] and common[-1] in chains[ankle] for _, knee, ankle in legs
         ):
             return cls(neck=above)
-        return cls(common[-1], legs, above)
+        toes = (parts.get(side + "Toes", -1) for side in SIDES)
+        bending = tuple(
+            toe if ankle in chains[toe] else -1 for toe, (*_, ankle) in zip(toes, legs, strict=True)
+        )
+        return cls(common[-1], legs, bending, above)

@@ -5,13 +5,14 @@ it to where their feet are, trunk and collarbones turn, and arms are bent as `Up
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from cubeling.characters.ik import two_bones
+from cubeling.characters.ik.heels import across, heel_lift
 from cubeling.characters.ik.reaching.arms import scale_vector, to_vector
 from cubeling.characters.ik.reaching.bending import HandOnItsWay
 from cubeling.characters.ik.reaching.kinematics import Frames
@@ -45,6 +46,10 @@ from cubeling.characters.skeleton.scalar_quaternions import (
 LEVEL_SHARE, MAX_LEVEL_RAD = 0.7, 0.9
 """Part of the turn of the chest that neck and head undo, and how far at most: it sees on."""
 
+KNEE_SHARE = 0.2
+"""Part of a turn of the pelvis that knees go along with. They follow their planted feet: knees that
+follow the pelvis turn ankles beyond their range, and those that follow feet alone turn hips so."""
+
 EFFORT_STEPS = 10
 """Steps to find how far a hand gets: fewer than to look right."""
 
@@ -66,7 +71,12 @@ class WholeBody:
         for place, parent in enumerate(kinematics.parents):
             carried.append(place == self._pelvis or (parent >= 0 and carried[parent]))
         self._carried = carried
-        moved = [joint for leg in stance.legs for joint in leg if carried[number[joint]]]
+        self.toes = [
+            number[toe] if carried[number[leg[2]]] else -1
+            for leg, toe in zip(stance.legs, stance.toes, strict=True)
+        ]
+        legs = zip(stance.legs, stance.toes, strict=True)
+        moved = [joint for leg, toe in legs for joint in (*leg, toe) if carried[number[joint]]]
         self._leg_rows, self._neck_rows = np.array(moved, np.intp), np.array(stance.neck, np.intp)
 
     @staticmethod
@@ -127,18 +137,48 @@ class WholeBody:
         x, y, z = rotate(conjugate(turn), moved)
         shifts[row] += np.array([x, y, z]) / kinematics.size_above(pelvis)
         rows: list[Quaternion] = []
-        for hip, knee, ankle in self.legs:
-            # As the pelvis sees it, the foot moves: its legs then bend in the planes of the pose.
-            foot = seen_from_pelvis(places[ankle], tree, settled)
-            upper, lower = two_bones.reach(places[hip], places[knee], places[ankle], foot)
-            both = multiply(upper, lower)
-            rows.append(multiply(conjugate(turns[parents[hip]]), multiply(upper, turns[hip])))
-            above_knee = multiply(upper, turns[parents[knee]])
-            rows.append(multiply(conjugate(above_knee), multiply(both, turns[knee])))
-            if self._carried[ankle]:
-                above_foot = multiply(whole, multiply(both, turns[parents[ankle]]))
-                rows.append(multiply(conjugate(above_foot), turns[ankle]))
+        for leg, toe, angle in zip(self.legs, self.toes, kinematics.ankle_angles, strict=True):
+            hip = subtract(places[leg[0]], tree.centre)
+            hip = add(add(tree.centre, settled.shift), rotate(whole, hip))
+            rows += self._bent_leg(leg, toe, angle, frames, hip, whole)
         local[self._leg_rows] = rows
+
+    def _bent_leg(
+        self,
+        leg: Sequence[int],
+        toe: int,
+        rest_angle: float,
+        frames: Frames,
+        hip_place: Vector,
+        whole: Quaternion,
+    ) -> Iterator[Quaternion]:
+        """Yield the local rotations of a leg below a pelvis that has turned, its foot planted.
+
+        Its knee bends in the plane of the pose: it goes with the foot more than with the pelvis.
+        """
+        (turns, places), parents, (hip, knee, ankle) = frames, self.upper.kinematics.parents, leg
+        along = from_rotation_vector(scale_vector(to_rotation_vector(whole), KNEE_SHARE))
+        thigh, leg_line = (
+            rotate(along, subtract(places[joint], places[hip])) for joint in (knee, ankle)
+        )
+        bones = hip_place, add(hip_place, thigh), add(hip_place, leg_line)
+        foot, lift = places[ankle], IDENTITY
+        if toe >= 0:
+            ball = places[toe]
+            lift = heel_lift(bones, (foot, ball), across(foot, ball), rest_angle)
+            foot = add(ball, rotate(lift, subtract(foot, ball)))
+        upper, lower = two_bones.reach(*bones, foot)
+        both, upper = multiply(upper, multiply(lower, along)), multiply(upper, along)
+        above_hip = multiply(whole, turns[parents[hip]])
+        yield multiply(conjugate(above_hip), multiply(upper, turns[hip]))
+        above_knee = multiply(upper, turns[parents[knee]])
+        yield multiply(conjugate(above_knee), multiply(both, turns[knee]))
+        if self._carried[ankle]:
+            above_foot = multiply(both, turns[parents[ankle]])
+            yield multiply(conjugate(above_foot), multiply(lift, turns[ankle]))
+        if toe >= 0:
+            above_toe = multiply(lift, turns[parents[toe]])
+            yield multiply(conjugate(above_toe), turns[toe])
 
     def level_head(self, local: Array, frames: Frames, turned: Quaternion) -> None:
         """Let neck and head undo most of a turn of the chest from its pose, that of the frames."""

@@ -11,7 +11,8 @@ from cubeling.characters.ik.reaching.tree import FIRST_STEPS, FOOT_AHEAD, UPPER_
 from cubeling.characters.ik.reaching.whole_body import WholeBody
 from cubeling.characters.model.standing import idle_clips
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
+from cubeling.characters.skeleton.natural_limits import natural_limits
 from cubeling.characters.skeleton.pose import Array
 from tests.characters.ik.reaching.bodies import PERSON_M, bundled, stick
 
@@ -22,8 +23,6 @@ PLACES = {
     "behind": (0.25, 0.5, -0.2),
 }
 """Places in body heights: left, up, ahead."""
-
-FEET = ("leftFoot", "rightFoot")
 
 
 @cache
@@ -72,12 +71,37 @@ def test_feet_stay_as_they_are_and_the_mass_over_them(name: str) -> None:
     character, whole, pose = human()
     reached = whole.reach(pose, HandTarget(at(PLACES.get(name, (0.1, 1.3, 0.3)))))
     before, after = (each.globals(character.skeleton) for each in (pose, reached))
-    feet = [character.anatomy.joints[foot] for foot in FEET]
-    assert np.allclose(before[feet], after[feet], atol=1e-9)
+    balls = [character.anatomy.joints[side + "Toes"] for side in SIDES]
+    assert np.allclose(before[balls], after[balls], atol=1e-9)
     hip = joint(reached, "leftUpperLeg") - joint(pose, "leftUpperLeg")
     top = joint(reached, "neck") - joint(pose, "neck")
     mass = hip + UPPER_MASS * UPPER_MIDDLE * (top - hip)
     assert mass[2] < (FOOT_AHEAD + 0.03) * character.height
+
+
+@pytest.mark.parametrize(
+    ("place", "lifted"), [((0.15, 0.05, 0.3), True), ((0.12, 0.45, 0.3), False)]
+)
+def test_a_heel_lifts_where_an_ankle_bends_no_further(
+    place: tuple[float, float, float], lifted: bool
+) -> None:
+    character, whole, pose = human()
+    reached = whole.reach(pose, HandTarget(at(place)))
+    foot = character.anatomy.joints["leftFoot"]
+    raised = joint(reached, "leftFoot")[1] - joint(pose, "leftFoot")[1]
+    assert raised > 0.005 * character.height if lifted else abs(raised) < 1e-9
+    limits = natural_limits(character.skeleton, character.anatomy)
+    assert np.degrees(limits.excess(reached.rotations)[foot]) < 1.0
+
+
+def test_no_ankle_or_hip_turns_beyond_its_range_while_the_pelvis_turns() -> None:
+    character, whole, pose = human()
+    limits = natural_limits(character.skeleton, character.anatomy)
+    legs = [character.anatomy.joints[s + part] for s in SIDES for part in ("Foot", "UpperLeg")]
+    for place in ((-0.5, 0.2, 0.15), (-0.5, 0.4, 0.45), (0.5, 0.2, 0.15)):
+        reached = whole.reach(pose, HandTarget(at(place)))
+        # Knees that go with the pelvis turn ankles 54 degrees beyond it, knees of feet hips 16.
+        assert np.degrees(limits.excess(reached.rotations)[legs]).max() < 12.0
 
 
 def test_a_near_place_moves_the_arm_only() -> None:
