@@ -118,7 +118,50 @@ class LegIK:
             rows.append(multiply(conjugate(thigh), shin))
             rows.append(multiply(conjugate(shin), multiply(foot, frames.rotations[ankle])))
         bent = pose.rotations.copy()
-        bent[self.indices[self.joints[:, 1:4]].ravel()] = rows
+        bent[self._rows] = rows
+        return Pose(pose.translations, bent, pose.scales, pose.morphs)
+
+    def plant(
+        self,
+        pose: Pose,
+        before: LegFrames,
+        hips: Sequence[Vector],
+        carriers: Sequence[Sequence[float]],
+    ) -> Pose:
+        """Return a pose whose hips have moved, with its feet where they were before.
+
+        Knees bend in the planes that they were in: they go with their feet.
+
+        Parameters
+        ----------
+        pose
+            The pose with its pelvis moved.
+        before
+            Frames before that.
+        hips
+            Where hips are now [m].
+        carriers
+            Rotation of what carries each of them now, in the character's frame.
+        """
+        rows: list[Quaternion] = []
+        turns, places = before.rotations, before.positions
+        for (_, hip, knee, ankle, _), (x, y, z), above in zip(
+            self._joints, hips, carriers, strict=True
+        ):
+            # The same as to move the foot the other way.
+            hx, hy, hz = places[hip]
+            fx, fy, fz = places[ankle]
+            foot = fx + hx - x, fy + hy - y, fz + hz - z
+            upper, lower = two_bones.reach(
+                places[hip], places[knee], places[ankle], foot, knees_ahead=self.knees_ahead
+            )
+            thigh = multiply(upper, turns[hip])
+            shin = multiply(multiply(upper, lower), turns[knee])
+            rows.append(multiply(conjugate(above), thigh))
+            rows.append(multiply(conjugate(thigh), shin))
+            rows.append(multiply(conjugate(shin), turns[ankle]))
+        bent = pose.rotations.copy()
+        bent[self._rows] = rows
         return Pose(pose.translations, bent, pose.scales, pose.morphs)
 
     def lower_pelvis(
@@ -137,6 +180,11 @@ class LegIK:
             x, y, z = positions[joint]
             positions[joint] = (x, y - distance, z)
         return replace(pose, translations=moved), LegFrames(frames.rotations, positions)
+
+    @cached_property
+    def _rows(self) -> NDArray[np.intp]:
+        """Hip, knee and ankle of each leg, numbers in the whole skeleton."""
+        return self.indices[self.joints[:, 1:4]].ravel()
 
     @cached_property
     def _joints(self) -> list[list[int]]:

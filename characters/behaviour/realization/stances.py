@@ -148,6 +148,10 @@ class StanceJoints:
         vectors = np.radians(axes[:, :, None] * self._shares[:, None, :, None])
         self._vectors = vectors.reshape(3 * len(parts), 3 * len(GROUPS))
         self._legs_follow = ON_TRUNK if anatomy.kind == "quadruped" else ON_HIPS
+        self._leg_joints: list[list[int]] = [] if self._legs is None else self._legs.joints.tolist()
+        # A pelvis that carries all legs takes their hips along as one.
+        pelvises = {leg[0] for leg in self._leg_joints}
+        self._one_pelvis = self._legs_follow == ON_HIPS and len(pelvises) == 1
         self._leg_length = 0.0 if self._legs is None else _leg_length(self._legs)
 
     @property
@@ -216,37 +220,47 @@ class StanceJoints:
         legs = self._legs
         assert legs is not None
         before = legs.frames(pose)
-        pelvis = int(legs.joints[0, 0])
+        pelvis = self._leg_joints[0][0]
         parent, number = legs.skeleton.parents[pelvis], legs.indices[pelvis]
         above = before.rotations[parent] if parent >= 0 else IDENTITY
         x, y, z = shift.tolist()
+        hips: list[Vector] = []
+        carrier = IDENTITY
         if self._legs_follow == ON_HIPS:
-            after_pelvis = multiply(above, turned.rotations[number].tolist())
-            turn = multiply(after_pelvis, conjugate(before.rotations[pelvis]))
-            y -= self._needed_drop(before, turn, (x, y, z))
+            carrier = multiply(above, turned.rotations[number].tolist())
+            turn = multiply(carrier, conjugate(before.rotations[pelvis]))
+            hips = self._hips_after(before, turn, (x, y, z))
+            drop = self._needed_drop(before, hips)
+            y, hips = y - drop, [(hx, hy - drop, hz) for hx, hy, hz in hips]
         moved = turned.translations.copy()
         moved[number] += rotate(conjugate(above), (x, y, z))
         turned = Pose(moved, turned.rotations, turned.scales, turned.morphs)
+        if self._one_pelvis:
+            return legs.plant(turned, before, hips, [carrier] * len(hips))
         after = legs.frames(turned)
-        ankles = legs.joints[:, 3].tolist()
-        feet = [
-            multiply(before.rotations[ankle], conjugate(after.rotations[ankle])) for ankle in ankles
-        ]
-        return legs.bend(turned, after, [before.positions[ankle] for ankle in ankles], feet)
+        hips = [after.positions[hip] for _, hip, *_ in self._leg_joints]
+        carriers = [after.rotations[above_hip] for above_hip, *_ in self._leg_joints]
+        return legs.plant(turned, before, hips, carriers)
 
-    def _needed_drop(self, before: LegFrames, turn: Quaternion, shift: Vector) -> float:
-        """Return how far a turned and shifted pelvis is to come down so that legs reach feet [m].
+    def _hips_after(self, before: LegFrames, turn: Quaternion, shift: Vector) -> list[Vector]:
+        """Return where hips are on a pelvis that has turned and been shifted [m]."""
+        places = before.positions
+        return [
+            add(add(places[pelvis], rotate(turn, subtract(places[hip], places[pelvis]))), shift)
+            for pelvis, hip, *_ in self._leg_joints
+        ]
+
+    def _needed_drop(self, before: LegFrames, hips: Sequence[Vector]) -> float:
+        """Return how far hips are to come down so that their legs reach their feet [m].
 
         A leg that was straighter before may stay so.
         """
-        legs, needed = self._legs, 0.0
-        assert legs is not None
-        for pelvis, hip, _, ankle, _ in legs.joints.tolist():
-            centre, old, foot = (before.positions[joint] for joint in (pelvis, hip, ankle))
-            x, y, z = add(add(centre, rotate(turn, subtract(old, centre))), shift)
-            most = max(MAX_EXTENSION * self._leg_length, math.dist(old, foot))
-            squared = most * most - (x - foot[0]) ** 2 - (z - foot[2]) ** 2
-            needed = max(needed, y - foot[1] - math.sqrt(max(squared, 0.0)))
+        needed = 0.0
+        for (_, hip, _, ankle, _), (x, y, z) in zip(self._leg_joints, hips, strict=True):
+            fx, fy, fz = foot = before.positions[ankle]
+            most = max(MAX_EXTENSION * self._leg_length, math.dist(before.positions[hip], foot))
+            squared = most * most - (x - fx) * (x - fx) - (z - fz) * (z - fz)
+            needed = max(needed, y - fy - math.sqrt(max(squared, 0.0)))
         return needed
 
 
