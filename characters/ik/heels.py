@@ -1,6 +1,7 @@
 """Heels that lift where an ankle bends no further: the ball of the foot stays planted."""
 
 import math
+from typing import NamedTuple
 
 from cubeling.characters.ik import two_bones
 from cubeling.characters.skeleton.natural_limits import RANGES
@@ -26,8 +27,21 @@ SOFT_RAD = math.radians(8.0)
 MOST_LIFT_RAD = math.radians(75.0)
 """How far a heel lifts."""
 
-STEPS = 4
+STEPS = 3
 """Steps to the lift: each leaves about a fifth of the error, as the raised ankle leans the shin."""
+
+
+class BentLeg(NamedTuple):
+    """How a leg bends to its planted foot."""
+
+    upper: Quaternion
+    """Rotation of the whole leg about the hip; see `two_bones.reach`."""
+
+    lower: Quaternion
+    """Rotation of the shin about the knee, before that."""
+
+    foot: Quaternion
+    """Turn of the foot about its ball; `IDENTITY` while the heel is down."""
 
 
 def angle_at(ankle: Vector, knee: Vector, ball: Vector) -> float:
@@ -36,42 +50,37 @@ def angle_at(ankle: Vector, knee: Vector, ball: Vector) -> float:
     return math.atan2(length(cross(shin, foot)), dot(shin, foot))
 
 
-def heel_lift(
-    leg: tuple[Vector, Vector, Vector],
-    planted: tuple[Vector, Vector],
-    left: Vector,
-    rest_angle: float,
-    *,
-    knees_ahead: bool = True,
-) -> Quaternion:
-    """Return how a planted foot turns about its ball so that its ankle stays within its range.
+def bend_to_foot(
+    leg: tuple[Vector, Vector, Vector], flat: Vector, ball: Vector, rest_angle: float
+) -> BentLeg:
+    """Return how a leg bends to a planted foot, whose heel lifts as far as its ankle needs it.
 
     Parameters
     ----------
     leg
-        Hip, knee and ankle before the leg bends to the foot [m].
-    planted
-        Ankle and ball of the foot flat on the ground, in the same frame [m].
-    left
-        Unit vector across the foot.
+        Hip, knee and ankle before the leg bends [m].
+    flat
+        Where the ankle is with the foot flat on the ground [m].
+    ball
+        Where the ball of the foot is and stays [m].
     rest_angle
         Between shin and foot at rest [rad]; see `angle_at`.
     """
-    hip, knee, ankle = leg
-    flat, ball = planted
-    turn, lift, raised = IDENTITY, 0.0, flat
+    hip, knee, _ = leg
+    upper, lower = two_bones.reach(*leg, flat)
+    foot, lift, raised = IDENTITY, 0.0, flat
     for _ in range(STEPS):
-        upper, _ = two_bones.reach(hip, knee, ankle, raised, knees_ahead=knees_ahead)
         bent = add(hip, rotate(upper, subtract(knee, hip)))
         over = rest_angle - angle_at(raised, bent, ball) + lift - MOST_FLEXION_RAD
         if over <= -SOFT_RAD:
-            return IDENTITY
+            break
         lift = over if over >= SOFT_RAD else (over + SOFT_RAD) ** 2 / (4.0 * SOFT_RAD)
         lift = min(lift, MOST_LIFT_RAD)
-        x, y, z = left
-        turn = from_rotation_vector((lift * x, lift * y, lift * z))
-        raised = add(ball, rotate(turn, subtract(flat, ball)))
-    return turn
+        x, _, z = across(flat, ball)
+        foot = from_rotation_vector((lift * x, 0.0, lift * z))
+        raised = add(ball, rotate(foot, subtract(flat, ball)))
+        upper, lower = two_bones.reach(*leg, raised)
+    return BentLeg(upper, lower, foot)
 
 
 def across(ankle: Vector, ball: Vector) -> Vector:

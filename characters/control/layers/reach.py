@@ -16,8 +16,9 @@ from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.reaching import HandTarget, ReachStyle, UpperBody
 from cubeling.characters.ik.reaching.arms import scale_vector
+from cubeling.characters.ik.reaching.placed_tree import Settled
 from cubeling.characters.ik.reaching.surface import BodySurface
-from cubeling.characters.ik.reaching.tree import FIRST_STEPS, STEP_S, Settled
+from cubeling.characters.ik.reaching.tree import FIRST_STEPS, STEP_S
 from cubeling.characters.ik.reaching.whole_body import PlacedBody
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.standing import idle_clips

@@ -12,16 +12,17 @@ found at once, by Gauss-Newton steps on the energy. Limbs are bent to it by the 
 import math
 import operator
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from cubeling.characters.ik.reaching.arms import cone_axis, scale_vector
 from cubeling.characters.ik.reaching.limb_springs import Pull, arm_strain, leg_strain, stiffen
+from cubeling.characters.ik.reaching.placed_tree import PlacedTree, Settled, Strut
 from cubeling.characters.ik.reaching.torso import PlacedTorso
 from cubeling.characters.skeleton.scalar_quaternions import (
     IDENTITY,
+    Quaternion,
     Vector,
     add,
     conjugate,
@@ -92,64 +93,6 @@ MAX_STEP_RAD, MAX_STEP_HEIGHTS = 0.6, 0.12
 UPPER_MASS, UPPER_MIDDLE = 0.65, 0.7
 """Mass of trunk, head and arms ÷ that of the body, and where its middle is between hips and
 shoulders."""
-
-
-class Strut(NamedTuple):
-    """A leg that stands."""
-
-    hip: Vector
-    """[m]"""
-
-    ankle: Vector
-    """Where it is and stays [m]."""
-
-    length: float
-    """Of thigh and shin [m]."""
-
-
-@dataclass(frozen=True)
-class PlacedTree:
-    """A body in one pose, in the character frame."""
-
-    torso: PlacedTorso
-
-    spine_ranges: Sequence[tuple[float, float]]
-    """How far the joints of its spine bow, turn and tilt together [rad]."""
-
-    centre: Vector
-    """The middle between the hips [m]."""
-
-    legs: Sequence[Strut]
-    """None of a body whose pelvis stays where it is."""
-
-    height: float
-    """Of the body [m]."""
-
-    eyes: Vector
-    """Where it looks from [m]."""
-
-
-class Settled(NamedTuple):
-    """How a tree is at rest: what its joints do besides the pose."""
-
-    shift: Vector
-    """Of the pelvis [m]."""
-
-    pelvis: Vector
-    """Turn of the pelvis about the middle between the hips, a rotation vector [rad]."""
-
-    spine: Vector
-    """Turn of the whole spine from the pelvis to the chest [rad]."""
-
-    left: Vector = (0.0, 0.0, 0.0)
-    """Turn of the left collarbone [rad]."""
-
-    right: Vector = (0.0, 0.0, 0.0)
-    """Turn of the right collarbone [rad]."""
-
-    def collar(self, side: str) -> Vector:
-        """Return the turn of the collarbone of a side [rad]."""
-        return self.left if side == "left" else self.right
 
 
 def settle(
@@ -303,84 +246,141 @@ class _Energy:
 
     def _add_targets(self, state: Sequence[float], stiff: list[float]) -> None:
         """Add the rows of all targets; to `stiff`, the diagonal, what pulls add to it."""
-        torso, (sx, sy, sz, px, py, pz, bx, by, bz, *collars) = self.torso, state
-        whole, bent = from_rotation_vector((px, py, pz)), from_rotation_vector((bx, by, bz))
-        step = torso.step((bx, by, bz))
-        carried = multiply(whole, bent)
-        chest, uncarried = multiply(carried, torso.chest), conjugate(carried)
-        old, (cx, cy, cz) = self.centre, self.centre
-        centre = (cx + sx, cy + sy, cz + sz)
-        waist = add(centre, rotate(whole, subtract(self.waist, old)))
-        none = [0.0] * len(collars)
-
-        def add_place(miss: float, way: Vector, place: Vector, shift: Vector) -> Row:
-            """Add a target of a place that the chest carries; return its row."""
-            levers = (cross(subtract(place, each), way) for each in (centre, waist))
-            row = [*shift, *next(levers), *next(levers), *none]
-            self.rows.append(row)
-            self.misses.append(miss)
-            return row
-
-        def add_direction(size: float, axis: Vector, aim: Vector, most: float) -> None:
-            """Add a target of where the chest faces, if an aim is further away than `most`."""
-            x, y, z = cross(axis, aim)
-            sine = math.sqrt(x * x + y * y + z * z)
-            over = math.atan2(sine, dot(axis, aim)) - most
-            if over > 0.0 and sine > 1e-9:
-                turn = scale_vector((x, y, z), -size / sine)
-                self.rows.append([0.0, 0.0, 0.0, *turn, *turn, *none])
-                self.misses.append(size * over)
-
+        posed = self._posed(state)
         for number, pull in enumerate(self.pulls):
-            at = 3 * number
-            swing = from_rotation_vector((collars[at], collars[at + 1], collars[at + 2]))
-            bone = rotate(swing, subtract(pull.shoulder, pull.base))
-            place = torso.carry(step, add(pull.base, bone))
-            shoulder = add(centre, rotate(whole, subtract(place, old)))
-            aim = subtract(pull.place, shoulder)
-            far = max(length(aim), 1e-9)
-            miss, slope = arm_strain(pull, far, self.power)
-            if slope:
-                way = scale_vector(aim, -slope / far)
-                row = add_place(miss, way, shoulder, way)
-                lever = rotate(carried, bone)
-                row[9 + at : 12 + at] = rotate(uncarried, cross(lever, way))
-                stiffen(stiff, 0, (0.0, 0.0, 0.0), aim, miss * slope / far, 1.0)
-                for first, joint in ((3, centre), (6, waist)):
-                    stiffen(stiff, first, subtract(shoulder, joint), aim, miss * slope / far)
-                stiffen(stiff, 9 + at, lever, aim, miss * slope / far)
-            add_direction(CONE_SPRING * pull.weight, cone_axis(chest, pull.arm.sign), aim, CONE_RAD)
+            self._add_pull(number, pull, posed, stiff)
         if self.gaze is not None:
-            eyes = add(centre, rotate(whole, subtract(torso.carry(step, self.eyes), old)))
-            ahead = rotate(chest, (0.0, 0.0, 1.0))
-            add_direction(GAZE_SPRING, ahead, subtract(self.gaze, eyes), GAZE_RAD)
+            ahead = rotate(posed.chest, (0.0, 0.0, 1.0))
+            aim = subtract(self.gaze, posed.carry(self.eyes))
+            self._add_direction(GAZE_SPRING, ahead, aim, GAZE_RAD)
         for leg, own in zip(self.legs, self.own, strict=True):
-            hip = add(centre, rotate(whole, subtract(leg.hip, old)))
-            aim = subtract(leg.ankle, hip)
-            far = max(length(aim), 1e-9)
-            miss, slope = leg_strain(far / leg.length, own)
-            way = scale_vector(aim, -slope / (far * leg.length))
-            row = [*way, *cross(subtract(hip, centre), way), 0.0, 0.0, 0.0, *none]
-            self.rows.append(row)
-            room = max(own, LONGEST_LEG) - far / leg.length
-            self.leg_rows.append(([value / slope for value in row], room))
-            self.misses.append(miss)
+            self._add_leg(leg, own, posed)
         if self.legs:
-            top = add(centre, rotate(whole, subtract(torso.carry(step, torso.top), old)))
-            x, y, z = subtract(top, torso.top)
-            share = UPPER_MASS * UPPER_MIDDLE
-            moved = (sx + share * (x - sx), sy + share * (y - sy), sz + share * (z - sz))
-            ahead = cross(_LEFT, self.up)
-            for axis, (low, high) in zip((_LEFT, ahead), self.support, strict=True):
-                away, spring = dot(moved, axis), BALANCE_SPRING / self.height
-                beyond = away - high if away > high else away - low if away < low else 0.0
-                size, miss = spring, spring * away
-                if beyond:
-                    hard = FALLING_SPRING / self.height
-                    size = math.hypot(spring, hard)
-                    miss = (spring * spring * away + hard * hard * beyond) / size
-                way = scale_vector(axis, size * share)
-                add_place(miss, way, top, scale_vector(axis, size))
+            self._add_balance(posed)
+
+    def _posed(self, state: Sequence[float]) -> "_Posed":
+        sx, sy, sz, px, py, pz, bx, by, bz, *collars = state
+        whole, bent = from_rotation_vector((px, py, pz)), from_rotation_vector((bx, by, bz))
+        centre = add(self.centre, (sx, sy, sz))
+        waist = add(centre, rotate(whole, subtract(self.waist, self.centre)))
+        carried = multiply(whole, bent)
+        step = self.torso.step((bx, by, bz))
+        chest = multiply(carried, self.torso.chest)
+        swings = [
+            from_rotation_vector((x, y, z)) for x, y, z in zip(*[iter(collars)] * 3, strict=True)
+        ]
+        return _Posed(
+            self.torso,
+            self.centre,
+            (sx, sy, sz),
+            centre,
+            waist,
+            whole,
+            step,
+            carried,
+            chest,
+            swings,
+        )
+
+    def _add_pull(self, number: int, pull: Pull, posed: "_Posed", stiff: list[float]) -> None:
+        """Add an arm that pulls at its shoulder, and a chest that faces what it reaches for."""
+        at = 9 + 3 * number
+        bone = rotate(posed.swings[number], subtract(pull.shoulder, pull.base))
+        shoulder = posed.carry(add(pull.base, bone))
+        aim = subtract(pull.place, shoulder)
+        far = max(length(aim), 1e-9)
+        miss, slope = arm_strain(pull, far, self.power)
+        if slope:
+            way = scale_vector(aim, -slope / far)
+            row = self._add_place(miss, way, shoulder, way, posed)
+            lever = rotate(posed.carried, bone)
+            row[at : at + 3] = rotate(conjugate(posed.carried), cross(lever, way))
+            stiffen(stiff, 0, (0.0, 0.0, 0.0), aim, miss * slope / far, 1.0)
+            for first, joint in ((3, posed.centre), (6, posed.waist)):
+                stiffen(stiff, first, subtract(shoulder, joint), aim, miss * slope / far)
+            stiffen(stiff, at, lever, aim, miss * slope / far)
+        axis = cone_axis(posed.chest, pull.arm.sign)
+        self._add_direction(CONE_SPRING * pull.weight, axis, aim, CONE_RAD)
+
+    def _add_leg(self, leg: Strut, own: float, posed: "_Posed") -> None:
+        """Add a leg that holds what stands on it."""
+        hip = add(posed.centre, rotate(posed.whole, subtract(leg.hip, self.centre)))
+        aim = subtract(leg.ankle, hip)
+        far = max(length(aim), 1e-9)
+        miss, slope = leg_strain(far / leg.length, own)
+        way = scale_vector(aim, -slope / (far * leg.length))
+        row = [*way, *cross(subtract(hip, posed.centre), way), *[0.0] * (len(self.springs) - 6)]
+        self.rows.append(row)
+        room = max(own, LONGEST_LEG) - far / leg.length
+        self.leg_rows.append(([value / slope for value in row], room))
+        self.misses.append(miss)
+
+    def _add_balance(self, posed: "_Posed") -> None:
+        """Add the middle of mass, which stays over the feet."""
+        top = posed.carry(self.torso.top)
+        share = UPPER_MASS * UPPER_MIDDLE
+        shift = posed.shift
+        moved = add(shift, scale_vector(subtract(subtract(top, self.torso.top), shift), share))
+        ahead = cross(_LEFT, self.up)
+        for axis, (low, high) in zip((_LEFT, ahead), self.support, strict=True):
+            away, spring = dot(moved, axis), BALANCE_SPRING / self.height
+            beyond = away - high if away > high else away - low if away < low else 0.0
+            size, miss = spring, spring * away
+            if beyond:
+                hard = FALLING_SPRING / self.height
+                size = math.hypot(spring, hard)
+                miss = (spring * spring * away + hard * hard * beyond) / size
+            way = scale_vector(axis, size * share)
+            self._add_place(miss, way, top, scale_vector(axis, size), posed)
+
+    def _add_place(
+        self, miss: float, way: Vector, place: Vector, shift: Vector, posed: "_Posed"
+    ) -> Row:
+        """Add a target of a place that the chest carries; return its row."""
+        pelvis = cross(subtract(place, posed.centre), way)
+        spine = cross(subtract(place, posed.waist), way)
+        row = [*shift, *pelvis, *spine, *[0.0] * (len(self.springs) - 9)]
+        self.rows.append(row)
+        self.misses.append(miss)
+        return row
+
+    def _add_direction(self, size: float, axis: Vector, aim: Vector, most: float) -> None:
+        """Add a target of where the chest faces, if an aim is further away than `most`."""
+        x, y, z = cross(axis, aim)
+        sine = math.sqrt(x * x + y * y + z * z)
+        over = math.atan2(sine, dot(axis, aim)) - most
+        if over > 0.0 and sine > 1e-9:
+            turn = scale_vector((x, y, z), -size / sine)
+            none = [0.0] * (len(self.springs) - 9)
+            self.rows.append([0.0, 0.0, 0.0, *turn, *turn, *none])
+            self.misses.append(size * over)
+
+
+class _Posed(NamedTuple):
+    """Where the joints of a tree are in a state."""
+
+    torso: PlacedTorso
+    old_centre: Vector
+    shift: Vector
+    centre: Vector
+    waist: Vector
+    whole: Quaternion
+    """Turn of the pelvis."""
+
+    step: Quaternion
+    """Turn of each joint of the spine."""
+
+    carried: Quaternion
+    """Turn of what the spine carries."""
+
+    chest: Quaternion
+    swings: list[Quaternion]
+    """Of the collarbones."""
+
+    def carry(self, place: Vector) -> Vector:
+        """Return where a place of the chest is [m]."""
+        there = self.torso.carry(self.step, place)
+        return add(self.centre, rotate(self.whole, subtract(there, self.old_centre)))
 
 
 _LEFT: Vector = (1.0, 0.0, 0.0)

@@ -12,20 +12,15 @@ from functools import cached_property
 import numpy as np
 
 from cubeling.characters.ik import two_bones
-from cubeling.characters.ik.heels import across, heel_lift
+from cubeling.characters.ik.heels import bend_to_foot
 from cubeling.characters.ik.reaching.arms import scale_vector, to_vector
 from cubeling.characters.ik.reaching.bending import HandOnItsWay
 from cubeling.characters.ik.reaching.kinematics import Frames
 from cubeling.characters.ik.reaching.limb_springs import Pull
+from cubeling.characters.ik.reaching.placed_tree import PlacedTree, Settled, Strut
 from cubeling.characters.ik.reaching.targets import NEUTRAL_REACH, HandTarget, ReachStyle
 from cubeling.characters.ik.reaching.torso import PlacedTorso, Reaching, shortfall
-from cubeling.characters.ik.reaching.tree import (
-    FIRST_STEPS,
-    PlacedTree,
-    Settled,
-    Strut,
-    settle,
-)
+from cubeling.characters.ik.reaching.tree import FIRST_STEPS, settle
 from cubeling.characters.ik.reaching.upper_body import UpperBody
 from cubeling.characters.skeleton.pose import Array, Pose
 from cubeling.characters.skeleton.scalar_quaternions import (
@@ -162,12 +157,10 @@ class WholeBody:
             rotate(along, subtract(places[joint], places[hip])) for joint in (knee, ankle)
         )
         bones = hip_place, add(hip_place, thigh), add(hip_place, leg_line)
-        foot, lift = places[ankle], IDENTITY
         if toe >= 0:
-            ball = places[toe]
-            lift = heel_lift(bones, (foot, ball), across(foot, ball), rest_angle)
-            foot = add(ball, rotate(lift, subtract(foot, ball)))
-        upper, lower = two_bones.reach(*bones, foot)
+            upper, lower, lift = bend_to_foot(bones, places[ankle], places[toe], rest_angle)
+        else:
+            (upper, lower), lift = two_bones.reach(*bones, places[ankle]), IDENTITY
         both, upper = multiply(upper, multiply(lower, along)), multiply(upper, along)
         above_hip = multiply(whole, turns[parents[hip]])
         yield multiply(conjugate(above_hip), multiply(upper, turns[hip]))
