@@ -30,6 +30,7 @@ from cubeling.characters.synthesis.gestures.library import (
 from cubeling.characters.synthesis.gestures.marks import GestureMarks, marked_labels
 from cubeling.characters.synthesis.gestures.segmentation import (
     REST,
+    STROKE,
     Labels,
     Segmentation,
     arm_length,
@@ -44,6 +45,14 @@ RATE_HZ = 60.0
 MARGIN_S = 0.1
 """Rest that is kept before and after a unit of gestures [s]."""
 
+
+WALK_HEIGHTS, WALK_HEIGHTS_S = 0.3, 0.27
+"""A unit in which hips go further than this, and at least so fast on average, is a walk, whose arms
+swing [body heights, body heights/s]. People walk twice as fast; who dances or steps aside goes
+slower."""
+
+WALKS = "hands move only while the body walks"
+"""Why a clip has no gesture that has some such units."""
 
 MINOR_STROKE = 0.4
 """A hand whose peak speed is below this share of the other hand's makes no stroke (M4)."""
@@ -92,7 +101,7 @@ def find_gestures(
         found = Segmentation(marked_labels([bounds for bounds, _ in marked], frames), "")
         phrases = [_phrase(*each, paths, poses.rotations, anatomy) for each in marked]
     else:
-        found = segment(paths, RATE_HZ)
+        found = _without_walks(segment(paths, RATE_HZ), poses, skeleton, anatomy)
         phrases = [
             _phrase(bounds, None, paths, poses.rotations, anatomy)
             for bounds in phrase_bounds(found.labels)
@@ -171,6 +180,23 @@ def _phrase(
     strength = stroke_strength(turns[first : stop + 1], hand, anatomy, (times[0], times[-1]))
     apex = apices[max(busy, key=peaks.__getitem__)] if marked_apex is None else marked_apex
     return GesturePhrase(0, hand, bounds, apex, strength)
+
+
+def _without_walks(
+    found: Segmentation, poses: Pose, skeleton: Skeleton, anatomy: Anatomy
+) -> Segmentation:
+    """Return the phases without units in which the body walks."""
+    hips = anatomy.joint("hips")
+    if hips is None or found.reason:
+        return found
+    heights = skeleton.rest.globals(skeleton)[:, 1, 3]
+    ways = poses.globals(skeleton)[:, hips, [0, 2], 3] / float(np.ptp(heights))
+    labels = found.labels.copy()
+    for first, last in runs(labels != REST):
+        far = float(np.linalg.norm(ways[first : last + 1] - ways[first], axis=1).max())
+        if far > max(WALK_HEIGHTS, WALK_HEIGHTS_S * (last - first) / RATE_HZ):
+            labels[first : last + 1] = REST
+    return Segmentation(labels, "" if (labels == STROKE).any() else WALKS)
 
 
 def _arm_length(skeleton: Skeleton, anatomy: Anatomy, side: str) -> float:

@@ -1,5 +1,6 @@
 """Gestures are found in recordings without marks."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,12 @@ import pytest
 from cubeling.characters import Clip
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.synthesis.gestures.learning import RATE_HZ, find_gestures, learn_gestures
+from cubeling.characters.synthesis.gestures.learning import (
+    RATE_HZ,
+    WALKS,
+    find_gestures,
+    learn_gestures,
+)
 from cubeling.characters.synthesis.gestures.segmentation import (
     HOLD,
     PREPARATION,
@@ -139,6 +145,18 @@ def test_who_never_leaves_rest_or_never_rests_is_refused_in_one_line(human, beat
     ) as caught:
         learn_gestures([beating(knots)], human.skeleton, human.anatomy)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("heights", "found"), [(0.1, 2), (1.0, 0)])
+def test_hands_of_who_walks_off_make_no_gestures(human, beating, heights, found):
+    clip = beating(BEATS)
+    places = clip.poses.translations.copy()
+    hips = human.anatomy.joints["hips"]
+    places[:, hips, 2] += np.linspace(0.0, heights * human.height, len(places))
+    walked = replace(clip, poses=replace(clip.poses, translations=places))
+    analysed = find_gestures(walked, human.skeleton, human.anatomy)
+    assert len(analysed.phrases) == found
+    assert (analysed.reason == WALKS) == (not found)
 
 
 @pytest.mark.slow(reason="two recordings of people are retargeted and analysed")
