@@ -6,26 +6,102 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.characters.motion.balance import FAR_BEYOND_HEIGHTS, hips_beyond_feet
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.synthesis.library import Frames, MotionLibrary
 
 WINDOW_S = 0.5
 """Speed and yaw rate of a frame are means over so long before and after it [s]."""
 
-SPEED_CELL_M_S, YAW_CELL_RAD_S = 0.5, 0.6
+SPEED_CELL_M_S, YAW_CELL_RAD_S = 0.25, 0.6
 """Frames whose speeds and yaw rates fall into one cell of this size behave alike."""
+
+SPEED_ERROR_M_S = 0.5
+"""A speed that is off by this is as bad as a yaw rate that is off by `YAW_CELL_RAD_S`."""
 
 STANDING_M_S = 0.2
 """A slower body stands [m/s]."""
 
-HYSTERESIS_CELLS = 0.4
-"""A behaviour is left for one that is nearer by so many cells."""
+HYSTERESIS = 0.3
+"""A behaviour is left for one that is nearer by so many of these errors."""
 
 TOO_FAST_FACTOR = 2.0
 """How much worse it is to be too fast than too slow: a fast body orbits its target."""
 
 MIN_FRAMES = 12
 """Cells with fewer frames are no behaviour of their own."""
+
+MAX_DRIFT_RAD = math.radians(30)
+"""Who moves in a direction farther from where he faces neither walks nor runs ahead [rad]."""
+
+MAX_SPEED_CHANGE = 0.2
+"""Who changes his speed by a larger share in `WINDOW_S` does not hold it."""
+
+
+@dataclass(frozen=True)
+class Travel:
+    """How the body moves over the ground around each frame of a library."""
+
+    speed: Array
+    """Mean speed, (frames,) [m/s]."""
+
+    yaw_rate: Array
+    """Mean yaw rate, to the left, (frames,) [rad/s]."""
+
+    drift: Array
+    """Direction of its way from where it faces in the middle of it, to the left, (frames,) [rad]."""
+
+    acceleration: Array
+    """Change of its speed ahead, (frames,) [m/s²]."""
+
+    @staticmethod
+    def of(library: MotionLibrary) -> "Travel":
+        """Return what is seen in `WINDOW_S` before and after each frame.
+
+        A clip that ends goes on as in its last frame, and began as in its first.
+        """
+        reach = round(WINDOW_S * library.rate)
+        first = np.arange(len(library))
+        for _ in range(reach):
+            first = np.where(library.predecessors[first] < 0, first, library.predecessors[first])
+        place, yaw = np.zeros((len(library), 2)), np.zeros(len(library))
+        ahead = np.zeros((2, len(library)))
+        for number in range(2 * reach):
+            x, z, turn = library.steps[first].T
+            sine, cosine = np.sin(yaw), np.cos(yaw)
+            place += np.stack([cosine * x + sine * z, cosine * z - sine * x], axis=-1)
+            ahead[number // reach] += z
+            yaw += turn
+            first = library.onward(first, 1)
+        seconds = 2 * reach / library.rate
+        # Along an arc, the chord is shorter than the way.
+        half = np.clip(np.abs(yaw) / 2, 1e-6, math.pi - 0.5)
+        way = np.hypot(*place.T) * half / np.sin(half)
+        drift = np.arctan2(*place.T) - yaw / 2
+        return Travel(
+            way / seconds,
+            yaw / seconds,
+            np.arctan2(np.sin(drift), np.cos(drift)),
+            (ahead[1] - ahead[0]) / (seconds / 2) ** 2,
+        )
+
+    @property
+    def stands(self) -> NDArray[np.bool_]:
+        """Where it stands, (frames,)."""
+        return self.speed < STANDING_M_S
+
+    @property
+    def goes_ahead(self) -> NDArray[np.bool_]:
+        """Where it moves to where it faces, (frames,)."""
+        return ~self.stands & (np.abs(self.drift) < MAX_DRIFT_RAD)
+
+    @property
+    def is_steady(self) -> NDArray[np.bool_]:
+        """Where it holds its speed, (frames,)."""
+        held: NDArray[np.bool_] = (
+            np.abs(self.acceleration) * WINDOW_S < MAX_SPEED_CHANGE * self.speed
+        )
+        return held
 
 
 @dataclass(frozen=True)
@@ -40,8 +116,15 @@ class Behaviours:
 
     @staticmethod
     def of(library: MotionLibrary, kept: NDArray[np.bool_]) -> "Behaviours":
-        """Return the behaviours of the kept frames (frames,) of a library."""
-        rates = travel_rates(library)
+        """Return the behaviours of the kept frames (frames,) of a library.
+
+        To stand, or to hold a speed and a turn ahead: who speeds up, brakes or steps aside is on
+        the way to a behaviour, but has none, and neither has who falls. Only where nothing is left
+        does every motion count.
+        """
+        travel = Travel.of(library)
+        rates = np.stack([travel.speed, travel.yaw_rate], axis=-1)
+        kept = kept & _fit_for_play(library, travel, kept)
         cells = np.round(rates / [SPEED_CELL_M_S, YAW_CELL_RAD_S]).astype(np.intp)
         cells[rates[:, 0] < STANDING_M_S] = -1, 0  # whichever way it turns
         _, owner, counts = np.unique(cells[kept], axis=0, return_inverse=True, return_counts=True)
@@ -57,13 +140,13 @@ class Behaviours:
 
         The `present` one is left only for one that is clearly nearer.
         """
-        away = (self.means - [speed, yaw_rate]) / [SPEED_CELL_M_S, YAW_CELL_RAD_S]
+        away = (self.means - [speed, yaw_rate]) / [SPEED_ERROR_M_S, YAW_CELL_RAD_S]
         away[:, 0] *= np.where(away[:, 0] > 0.0, TOO_FAST_FACTOR, 1.0)
         if speed < STANDING_M_S:
             away[:, 1] = 0.0  # to stand is more than to keep the heading
         errors = np.sqrt(np.square(away).sum(1))
         if present >= 0:
-            errors[present] -= HYSTERESIS_CELLS
+            errors[present] -= HYSTERESIS
         return int(errors.argmin())
 
     def goals(self, behaviour: int) -> NDArray[np.bool_]:
@@ -72,23 +155,16 @@ class Behaviours:
         return found
 
 
-def travel_rates(library: MotionLibrary) -> Array:
-    """Return the mean speed [m/s] and yaw rate [rad/s] around each frame, (frames, 2)."""
-    reach = round(WINDOW_S * library.rate)
-    frames = np.arange(len(library))
-    first = frames
-    for _ in range(reach):
-        first = np.where(library.predecessors[first] < 0, first, library.predecessors[first])
-    total = np.zeros((len(library), 3))
-    yaw = np.zeros(len(library))
-    for _ in range(2 * reach):
-        x, z, turn = library.steps[first].T
-        sine, cosine = np.sin(yaw), np.cos(yaw)
-        total += np.stack([cosine * x + sine * z, cosine * z - sine * x, turn], axis=-1)
-        yaw += turn
-        first = library.onward(first, 1)
-    seconds = 2 * reach / library.rate
-    # Along an arc, the chord is shorter than the way.
-    half = np.clip(np.abs(total[:, 2]) / 2, 1e-6, math.pi - 0.5)
-    way = np.hypot(total[:, 0], total[:, 1]) * half / np.sin(half)
-    return np.stack([way, total[:, 2]], axis=-1) / seconds
+def _fit_for_play(
+    library: MotionLibrary, travel: Travel, kept: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return which frames stand, or hold a speed ahead over their feet; else all, (frames,)."""
+    height = float(np.ptp(library.skeleton.rest.globals(library.skeleton)[:, 1, 3]))
+    away = hips_beyond_feet(library.positions, library.anatomy) / height
+    for going in (
+        travel.goes_ahead & travel.is_steady & (away < FAR_BEYOND_HEIGHTS),
+        travel.goes_ahead,
+    ):
+        if (going & kept).sum() >= MIN_FRAMES:
+            return going | travel.stands
+    return np.ones(len(library), bool)

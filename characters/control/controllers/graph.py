@@ -11,6 +11,7 @@ import numpy as np
 from cubeling.characters.control.command import CharacterCommand
 from cubeling.characters.control.controllers.controller import ControllerFrame
 from cubeling.characters.control.controllers.recordings import read_motions
+from cubeling.characters.model.motion_library import library_of
 from cubeling.characters.control.controllers.walk import NOT_ACTIONS, WalkController
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
@@ -44,6 +45,9 @@ MAX_BEND_RAD_S, MAX_WIDE_BEND_RAD_S = 0.5, 1.5
 """By how much the root may turn besides what the clip turns, towards the target [rad/s]; the second
 where the graph does not turn by itself to both sides."""
 
+MAX_UNLEANED_M_S2 = 1.0
+"""How fast a bend may change the direction of a body that does not lean into it [m/s²]: 6°."""
+
 BEND_LAG_S, TEMPO_LAG_S = 0.2, 0.3
 """Time constants of that turn, and of the tempo [s]."""
 
@@ -75,12 +79,15 @@ class GraphController(WalkController):
         if self._stands_itself:
             states["idle"] = character.clips.get("idle", character.clips["Walk"])
         self._machine = StateMachine(states, "idle" if self._stands_itself else "move")
+        library = source.library
+        rest = library.skeleton.rest.globals(library.skeleton)[:, :3, 3]
+        self._from_rest = np.linalg.norm(library.positions - rest, axis=-1).mean(1)
         rates = behaviours.means[:, 1]
         turns = min(float(rates.max()), -float(rates.min())) > MAX_BEND_RAD_S
         self._max_bend = MAX_BEND_RAD_S if turns else MAX_WIDE_BEND_RAD_S
         self._bend, self._tempo = 0.0, 1.0
         self._to_stand = to_stand
-        self._strides_m = np.hypot(*source.library.steps[:, :2].T)
+        self._strides_m = np.hypot(*library.steps[:, :2].T)
         self._braking = False
 
     @property
@@ -129,7 +136,14 @@ class GraphController(WalkController):
             self._play_action(self._actions[state], weight, now, self._machine.state == state)
         elif state == "move":
             self._request(steered, now)
-        self._machine.request(state, now, begin=self._live.restart if state == "move" else None)
+        self._machine.request(state, now, begin=self._set_off if state == "move" else None)
+
+    def _set_off(self) -> None:
+        """Begin to move: who stood by a clip of his own sets off where the graph has no start."""
+        goals = np.flatnonzero(self._live.goals)
+        self._live.restart(
+            int(goals[self._from_rest[goals].argmin()]) if self._stands_itself else None
+        )
 
     def _request(self, steered: SteeringOutput, now: float) -> None:
         """Choose the goals, the tempo and the bend for what is asked for."""
@@ -139,14 +153,14 @@ class GraphController(WalkController):
         self._live.goals = self._behaviours.goals(self._behaviour)
         own_speed, own_yaw_rate = self._behaviours.means[self._behaviour].tolist()
         moving = min(speed, own_speed) > STANDING_M_S
-        low, high = TEMPO_LIMITS
-        tempo = min(max(speed / own_speed, low), high) if moving else 1.0
+        tempo = tempo_towards(speed / own_speed) if moving else 1.0
         elapsed = self._time - now
         self._tempo = low_pass(self._tempo, tempo, elapsed, TEMPO_LAG_S)
         if self._machine.state == "move":
             self._live.set_tempo(self._tempo, now - self._machine.entered)
         missing = yaw_rate - own_yaw_rate * tempo if moving else 0.0
-        asked = min(max(missing, -self._max_bend), self._max_bend)
+        most = min(self._max_bend, MAX_UNLEANED_M_S2 / max(own_speed * tempo, STANDING_M_S))
+        asked = min(max(missing, -most), most)
         self._bend = low_pass(self._bend, asked, elapsed, BEND_LAG_S)
 
     def _frame(self, steered: SteeringOutput, going: bool) -> ControllerFrame:
@@ -194,13 +208,27 @@ def graph_factory(
     else:
         own = [clip for name, clip in character.clips.items() if name in OWN_CLIPS]
         clips = read_motions(motions, character) if motions else own
-        stored = analyse(MotionLibrary.of(clips, character.skeleton, character.anatomy))
+        stored = analyse(library_of(clips, character))
     behaviours, make_source, to_stand = SOURCES[kind](stored)
 
     def make(character: Character, scale: float, place: RootDelta | None) -> GraphController:
         return GraphController(character, scale, place, behaviours, make_source(), to_stand)
 
     return make
+
+
+def tempo_towards(ratio: float) -> float:
+    """Return the tempo for a speed that is a multiple of the clip's own.
+
+    What no tempo within `TEMPO_LIMITS` reaches is not tried: a run in slow motion is no walk.
+
+    >>> [tempo_towards(ratio) for ratio in (0.9, 1.1, 0.4, 3.0)]
+    [0.9, 1.1, 1.0, 1.0]
+    """
+    low, high = TEMPO_LIMITS
+    if ratio < low:
+        return min(2 * low - ratio, 1.0)  # continuous: it goes back to the clip's own tempo
+    return ratio if ratio < high else max(2 * high - ratio, 1.0)
 
 
 OWN_CLIPS = ("idle", *NOT_ACTIONS)
@@ -235,7 +263,7 @@ def fit_graph(stored: StoredGraph, character: Character) -> StoredGraph:
     return replace(stored, library=moved)
 
 
-LIVE_COSTS = EdgeCosts(per_frame=0.01, most_jumps=4)
+LIVE_COSTS = EdgeCosts(per_frame=0.02, most_jumps=4, balance=0.3)
 """What edges cost in play: to wait for a tenth of a second is as dear as a good jump."""
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.synthesis.balance import unsupported_lean, velocity_lean
 from cubeling.characters.synthesis.distances.distance import FrameDistance
 from cubeling.characters.synthesis.graphs.candidates import Candidates
 from cubeling.characters.synthesis.graphs.components import largest_component
@@ -39,6 +40,10 @@ class EdgeCosts:
 
     jump: float = 0.0
     """Added to every jump; distances are squared, so small jumps are cheap (M2.4)."""
+
+    balance: float = 0.0
+    """Factor of the squared lean [rad²] that an edge would take to stay on one's feet: of a jump to
+    another velocity within a blend, and of every frame whose hips are beyond the feet."""
 
     most_jumps: int = 0
     """Largest number of jumps from a frame into one clip, the cheapest ones; 0 for all. Small parts
@@ -178,6 +183,11 @@ def build_graph(
     starts = np.flatnonzero(library.successors >= 0)
     ends = library.successors[starts]
     natural = costs.natural_weight * distance.pairs(starts, ends)
+    if costs.balance:
+        leans = unsupported_lean(library)
+        pushes = velocity_lean(library, sources, targets)
+        jumps = jumps + costs.balance * (np.square(pushes) + np.square(leans[targets]))
+        natural = natural + costs.balance * np.square(leans[ends])
     every = Edges.of(
         len(library),
         np.concatenate([starts, sources]),

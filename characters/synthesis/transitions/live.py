@@ -45,6 +45,10 @@ class GraphPlayback(Protocol):
         """Go on towards the goals, and return how the root moves on the way."""
         ...
 
+    def start(self, frame: int) -> None:
+        """Begin anew at a frame, whatever was played."""
+        ...
+
 
 class StandardSource:
     """Plays the graph of the whole body; a `GraphPlayback`."""
@@ -52,8 +56,12 @@ class StandardSource:
     def __init__(self, graph: MotionGraph, start: int) -> None:
         self.library = graph.library
         self._graph = graph
-        self._player = GraphPlayer(graph.library, start)
-        self.frame = start
+        self.start(start)
+
+    def start(self, frame: int) -> None:
+        """Begin anew at a frame, whatever was played."""
+        self._player = GraphPlayer(self.library, frame)
+        self.frame = frame
         self.pose = self._player.pose()
 
     def advance(self, goals: Goals) -> RootDelta:
@@ -75,14 +83,18 @@ class PartsSource:
     def __init__(self, planner: TransitionPlanner, start: int) -> None:
         self.library = planner.graphs.library
         self._planner = planner
+        self.start(start)
+
+    def start(self, frame: int) -> None:
+        """Begin anew at a frame, whatever was played."""
         self._planned: StitchedMotion | None = None
         self._time = 0  # in the planned transition
         self._begun = 0  # its time at the request
         self._offset: Inertialization | None = None
         self._drift = OffsetDecay(np.zeros(3), np.zeros(3), OFFSET_S)
-        self._step = self.library.steps[start]
-        self.frame = start
-        self.pose = self._before = self.library.poses[start]
+        self._step = self.library.steps[frame]
+        self.frame = frame
+        self.pose = self._before = self.library.poses[frame]
 
     def advance(self, goals: Goals) -> RootDelta:
         """Go on towards the goals, and return how the root moves on the way."""
@@ -156,9 +168,15 @@ class LiveMotion:
         """Infinite: it goes on for as long as frames come."""
         return math.inf
 
-    def restart(self) -> None:
-        """Let time 0 be the newest frame: the motion is entered again, and goes on from there."""
+    def restart(self, frame: int | None = None) -> None:
+        """Let time 0 be the newest frame: the motion is entered again, and goes on from there.
+
+        With the number of a frame of the library, it begins anew at that one.
+        """
         self._since, self._start = 0.0, float(self._newest)
+        if frame is not None:
+            self.source.start(frame)
+            self._frames = {self._newest: (self.source.pose, self._place)}
 
     def set_tempo(self, tempo: float, time: float) -> None:
         """Play faster or slower from a time on [s]; a step gets no longer by that."""
