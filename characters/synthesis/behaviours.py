@@ -49,7 +49,7 @@ class Travel:
     """Mean yaw rate, to the left, (frames,) [rad/s]."""
 
     drift: Array
-    """Direction of its way from where it faces in the middle of it, to the left, (frames,) [rad]."""
+    """Direction of its way from where it faces halfway, to the left, (frames,) [rad]."""
 
     acceleration: Array
     """Change of its speed ahead, (frames,) [m/s²]."""

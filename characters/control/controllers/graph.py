@@ -11,14 +11,15 @@ import numpy as np
 from cubeling.characters.control.command import CharacterCommand
 from cubeling.characters.control.controllers.controller import ControllerFrame
 from cubeling.characters.control.controllers.recordings import read_motions
-from cubeling.characters.model.motion_library import library_of
 from cubeling.characters.control.controllers.walk import NOT_ACTIONS, WalkController
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
 from cubeling.characters.model.character import Character
+from cubeling.characters.model.motion_library import library_of
 from cubeling.characters.motion.motion import Motion, RootDelta
 from cubeling.characters.motion.state_machine import StateMachine
 from cubeling.characters.retargeting.retarget import retarget
+from cubeling.characters.skeleton.feet import find_feet
 from cubeling.characters.smoothing import low_pass
 from cubeling.characters.synthesis.archive import skeleton_identity
 from cubeling.characters.synthesis.behaviours import STANDING_M_S, Behaviours
@@ -47,6 +48,9 @@ where the graph does not turn by itself to both sides."""
 
 MAX_UNLEANED_M_S2 = 1.0
 """How fast a bend may change the direction of a body that does not lean into it [m/s²]: 6°."""
+
+MAX_RAISED_HEIGHTS = 0.02
+"""A foot this far above where its clip has it is not held on the ground [body heights]."""
 
 BEND_LAG_S, TEMPO_LAG_S = 0.2, 0.3
 """Time constants of that turn, and of the tempo [s]."""
@@ -89,6 +93,8 @@ class GraphController(WalkController):
         self._to_stand = to_stand
         self._strides_m = np.hypot(*library.steps[:, :2].T)
         self._braking = False
+        self._height = character.height
+        self._balls = [foot[-1] for foot in find_feet(library.skeleton)]
 
     @property
     def library(self) -> MotionLibrary:
@@ -173,7 +179,14 @@ class GraphController(WalkController):
         if self._machine.state != "move":
             return super()._feet_down()
         source = self._live.source
-        return source.library.contacts[source.frame].tolist() if self._feet else None
+        if not self._feet:
+            return None
+        # While a jump passes over, a foot may still be in the air that stands in the new clip.
+        shown = source.pose.globals(source.library.skeleton)[self._balls, 1, 3]
+        raised = shown - source.library.positions[source.frame, self._balls, 1]
+        near = raised < MAX_RAISED_HEIGHTS * self._height
+        down: list[bool] = (source.library.contacts[source.frame] & near).tolist()
+        return down
 
 
 def graph_factory(
@@ -263,7 +276,7 @@ def fit_graph(stored: StoredGraph, character: Character) -> StoredGraph:
     return replace(stored, library=moved)
 
 
-LIVE_COSTS = EdgeCosts(per_frame=0.02, most_jumps=4, balance=0.3)
+LIVE_COSTS = EdgeCosts(per_frame=0.02, jump=0.1, most_jumps=4, balance=0.3)
 """What edges cost in play: to wait for a tenth of a second is as dear as a good jump."""
 
 

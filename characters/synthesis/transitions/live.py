@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 from cubeling.characters.motion.blend import mix
 from cubeling.characters.motion.inertialization import Inertialization, OffsetDecay
 from cubeling.characters.motion.motion import RootDelta
-from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
 from cubeling.characters.synthesis.graphs.graph import MotionGraph
 from cubeling.characters.synthesis.library import MotionLibrary
-from cubeling.characters.synthesis.transitions.playback import GraphPlayer
+from cubeling.characters.synthesis.transitions.playback import GraphPlayer, extrapolate
 from cubeling.characters.synthesis.transitions.progressive import TransitionPlanner
 from cubeling.characters.synthesis.transitions.stitching import LowPass, StitchedMotion, stitch
 
@@ -129,13 +128,7 @@ class PartsSource:
         transition = self._planner.plan(self.frame, goals)
         planned = stitch(self._planner.graphs, transition, LIVE_LOW_PASS)
         now = planned.before
-        turned = rotations.multiply(
-            self.pose.rotations, rotations.conjugate(self._before.rotations)
-        )
-        onward = Pose(
-            2 * self.pose.translations - self._before.translations,
-            rotations.multiply(turned, self.pose.rotations),
-        )
+        onward = extrapolate(self._before, self.pose)
         self._offset = Inertialization.begin(
             (self.pose, onward),
             (planned.poses[now], planned.poses[now + 1]),

@@ -1,86 +1,90 @@
-"""Playing frames of a library along a path: jumps are blended, and the root keeps going.
+"""Playing frames of a library along a path: jumps are inertialized, and the root keeps going.
 
 Source: Fernández-Baena 2015, M1.3 and M1.6. Each frame moves the root by its own step, in the axes
 that the root has then; this accumulates the planar alignments of all jumps.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+
+import numpy as np
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.motion.baking import placed_clip
 from cubeling.characters.motion.clip import Clip
-from cubeling.characters.motion.curves import ease
+from cubeling.characters.motion.inertialization import Inertialization, OffsetDecay
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
 from cubeling.characters.synthesis.library import MotionLibrary
 
 BLEND_S = 0.3
-"""Length of the blend after a jump [s] (M1.3, [GAP]); over 0.25 s some joints jump."""
-
-
-@dataclass
-class _Stream:
-    """A clip that plays."""
-
-    frame: int
-    """Its frame in the library."""
-
-    age: int
-    """Frames that it has played since the jump to it."""
+"""Time in which a jump passes over to what it leads to [s] (M1.3, [GAP]); in 0.25 s some joints
+jump."""
 
 
 class GraphPlayer:
-    """Plays one frame after another, and blends where they do not follow each other.
+    """Plays one frame after another, and passes over where they do not follow each other.
 
-    After a jump the left clip plays on under the new one for the length of the blend, and the new
-    one has the weight 3u² − 2u³ (M1.3). A left clip that ends stays in its last frame.
+    After a jump the new clip plays at once, and its difference from what was shown decays. A blend
+    with the left clip, as M1.3 has it, needs that clip to go on; where it ends soon after the jump,
+    a limb would stop in the air.
     """
 
     def __init__(self, library: MotionLibrary, frame: int, blend: float = BLEND_S) -> None:
         self.library = library
-        self._length = max(round(blend * library.rate), 1)
-        self._streams = [_Stream(frame, self._length)]
-
-    @property
-    def frame(self) -> int:
+        self.frame = frame
         """The frame of the library that is played."""
-        return self._streams[-1].frame
+        self._length = max(blend, 1.0 / library.rate)
+        self._offset: Inertialization | None = None
+        self._drift = OffsetDecay(np.zeros(3), np.zeros(3), self._length)
+        self._age = 0  # frames since the jump
+        self._shown = self._before = library.poses[frame]
 
     def advance(self, frame: int) -> RootDelta:
         """Go to the next frame, and return how the root moves on the way there."""
-        step = self._nest(self.library.steps, lambda a, b, weight: a + (b - a) * weight)
-        following = self.library.successors
-        jumps = following[self.frame] != frame
-        for stream in self._streams if jumps else self._streams[:-1]:
-            onward = int(following[stream.frame])
-            stream.frame = stream.frame if onward < 0 else onward
-            stream.age += 1
-        if jumps:
-            self._streams.append(_Stream(frame, 1))
-        else:
-            self._streams[-1] = _Stream(frame, self._streams[-1].age + 1)
-        newest_alone = max(n for n, s in enumerate(self._streams) if n == 0 or s.age > self._length)
-        self._streams = self._streams[newest_alone:]
+        library = self.library
+        step = library.steps[self.frame] + self._drift.at(self._age / library.rate)
+        self._age += 1
+        if library.successors[self.frame] != frame:
+            self._jump(frame, step)
+        self.frame = frame
+        self._before, self._shown = self._shown, self._with_offset(library.poses[frame])
         return RootDelta(*step.tolist())
 
     def pose(self) -> Pose:
         """Return the pose now, with the root at the origin."""
-        poses = self.library.poses
-        return Pose(
-            self._nest(poses.translations, lambda a, b, weight: a + (b - a) * weight),
-            self._nest(poses.rotations, rotations.slerp),
-        )
+        return self._shown
 
-    def _nest(self, rows: Array, mix: Callable[[Array, Array, float], Array]) -> Array:
-        """Return the mix of the streams' rows: each new stream takes over from all before it."""
-        first, *others = self._streams
-        value: Array = rows[first.frame]
-        for stream in others:
-            weight = ease(stream.age / (self._length + 1), "cubic")
-            value = mix(value, rows[stream.frame], weight)
-        return value
+    def _jump(self, frame: int, step: Array) -> None:
+        """Let what was shown pass over into a frame and those after it."""
+        library = self.library
+        onward = int(library.successors[self.frame])
+        # A clip that ends goes on as it was seen to move.
+        going = extrapolate(self._before, self._shown)
+        if onward >= 0:
+            going = self._with_offset(library.poses[onward])
+        after = int(library.onward(np.array([frame]), 1)[0])
+        self._offset = Inertialization.begin(
+            (going, extrapolate(self._shown, going)),
+            (library.poses[frame], library.poses[after]),
+            1.0 / library.rate,
+            self._length,
+        )
+        self._drift = OffsetDecay(step - library.steps[frame], np.zeros(3), self._length)
+        self._age = 0
+
+    def _with_offset(self, pose: Pose) -> Pose:
+        if self._offset is None:
+            return pose
+        return self._offset.apply(pose, self._age / self.library.rate)
+
+
+def extrapolate(before: Pose, now: Pose) -> Pose:
+    """Return the pose that is as far from one as that is from the one before it."""
+    turned = rotations.multiply(now.rotations, rotations.conjugate(before.rotations))
+    return Pose(
+        2 * now.translations - before.translations, rotations.multiply(turned, now.rotations)
+    )
 
 
 def path_clip(
