@@ -11,6 +11,7 @@ from cubeling.characters.model.inspection import (
     Inspection as Inspection,
     inspect as inspect,
 )
+from cubeling.characters.model.motion_library import library_of as library_of
 from cubeling.characters.model.speaking import gestures_for as gestures_for
 from cubeling.characters.model.standing import idle_clips as idle_clips
 from cubeling.characters.model.stick_figures import stick_figure as stick_figure

@@ -33,6 +33,10 @@ from cubeling.characters.skeleton import rotations as rotations
 from cubeling.characters.skeleton.pose import Array as Array, Skeleton as Skeleton
 from cubeling.characters.smoothing import smoothstep as smoothstep
 from cubeling.characters.synthesis.archive import skeleton_identity as skeleton_identity
+from cubeling.characters.synthesis.capabilities import (
+    capabilities as capabilities,
+    falling as falling,
+)
 from cubeling.characters.synthesis.choices import (
     DEFAULT_PROFILE as DEFAULT_PROFILE,
     Alignment as Alignment,

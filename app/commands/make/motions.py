@@ -72,14 +72,8 @@ def build(
     check_character(character)
     from cubeling.app.workshop.motion_graphs.recordings import clip_names, gather
     from cubeling.characters import Character
-    from cubeling.characters.model import with_root_joint
-    from cubeling.characters.motion import (
-        DEFAULT_RATE_HZ,
-        MotionLibrary,
-        analyse,
-        check_choices,
-        save_graph,
-    )
+    from cubeling.characters.model import library_of, with_root_joint
+    from cubeling.characters.motion import analyse, check_choices, save_graph
 
     check_choices(profile, distance)
     body = with_root_joint(Character.load(character))
@@ -93,7 +87,7 @@ def build(
             bar.update(reading, advance=1, description=f"reading {escape(Path(name).name)}")
 
         found = gather(names, body, skeleton, read)
-        library = MotionLibrary.of(found, body.skeleton, body.anatomy, DEFAULT_RATE_HZ)
+        library = library_of(found, body)
         comparing = bar.add_task("comparing", total=None)
         stored = analyse(
             library,
@@ -216,6 +210,36 @@ def describe(console: Console, stored: StoredGraph) -> None:
                 "there and back, or raise the threshold.",
                 highlight=False,
             )
+    describe_capabilities(console, library, whole)
+
+
+def describe_capabilities(console: Console, library: MotionLibrary, graph: MotionGraph) -> None:
+    """Print what a graph can do in play, what it lacks, and which clips are out of balance."""
+    from cubeling.characters.motion import capabilities, falling
+
+    rows = Table(title="Can do", title_justify="left", title_style="bold", box=SIMPLE_HEAD)
+    for heading in ("what", "", "best"):
+        rows.add_column(heading)
+    lacking = []
+    for each in capabilities(library, graph.kept):
+        if each.there:
+            values = f"{each.least:.1f} to {each.most:.1f} {each.unit}"
+            rows.add_row(each.name, values, escape(each.clip))
+        else:
+            lacking.append(f"{each.name} (nearest: {each.clip}, {each.most:.1f} {each.unit})")
+    console.print(rows)
+    if lacking:
+        console.print(
+            f"[yellow]![/] Lacks: {escape(', '.join(lacking))}. Record it, or the character does "
+            "what is nearest to it.",
+            highlight=False,
+        )
+    for name, share in falling(library).items():
+        console.print(
+            f"[yellow]![/] {escape(name)}: out of balance, the hips are far beyond the feet in "
+            f"{share:.1%} of its frames; these are not played for long.",
+            highlight=False,
+        )
 
 
 def _clips(library: MotionLibrary, graph: MotionGraph) -> Table:

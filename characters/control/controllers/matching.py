@@ -28,9 +28,8 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.locomotion.gaits import IDLE_SPEED, RUN_SPEED, TOP_SPEED
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, has_arrived
 from cubeling.characters.model.character import Character
-from cubeling.characters.model.mirroring import mirror_of
+from cubeling.characters.model.motion_library import mirror_or_none
 from cubeling.characters.motion.contacts import find_contacts
-from cubeling.characters.motion.mirror import Mirror
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.motion.state_machine import StateMachine
 from cubeling.characters.skeleton.feet import find_feet
@@ -234,7 +233,7 @@ def prepare_database(character: Character, motions: Sequence[str] = ()) -> Motio
             f"{character.name}: has no walk of its own for the controller 'matching'; name "
             "recordings of walking with --motions, or choose the controller 'tree'"
         )
-    mirror = _mirror(character)
+    mirror = mirror_or_none(character)
     clips = read_motions(motions, character)
     for side in (1.0,) if mirror else (1.0, -1.0):
         if not motions:
@@ -245,14 +244,6 @@ def prepare_database(character: Character, motions: Sequence[str] = ()) -> Motio
     if idle is not None and idle.root_motion and idle.cycle.length < STANDING_PACE:
         clips.append(idle)
     return MotionDatabase.of(clips, character.skeleton, character.anatomy, mirror)
-
-
-def _mirror(character: Character) -> Mirror | None:
-    """Return the mirror of a character; None if it is not symmetric."""
-    try:
-        return mirror_of(character)
-    except CharacterError:
-        return None
 
 
 def matching_factory(
