@@ -23,7 +23,7 @@ CYCLE_S = (0.5, 1.7)
 MIN_SPEED = 0.2
 """A slower body does not walk [body heights/s]."""
 
-MAX_SEAM = 0.035
+MAX_SEAM = 0.08
 """How unlike the body may be at both ends of a cycle: mean distance of its joints, with a tenth of
 a second of their velocities [body heights]."""
 
