@@ -44,6 +44,7 @@ from tests.bench.intervals import bootstrap_interval
 
 CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
 FRAMES, MAX_GRAPH_S, MAX_MEMORY_MB, MAX_QUERY_MS = 6600, 10.0, 500.0, 5.0
+MAX_LATE_QUERY_MS, MAX_STEP_MS = 20.0, 1e3 / 60
 
 KINDS = {
     "walk": ("16_15", "16_16", "16_31", "16_32", "02_01"),
@@ -202,8 +203,7 @@ def speed(console: Console, count: int) -> bool:
     split = Comparison(frames, costs).split("SP4b")
     parts = split.free()
     planner = TransitionPlanner(parts, graph)
-    times, fallbacks = _ask(planner, parts, count)
-    answered = count - fallbacks["legs"]
+    times, steps, followed = _ask(planner, parts, count)
     table = Table(
         title=f"{len(frames)} frames of {len(names)} recordings, {len(graph.edges)} edges"
     )
@@ -218,30 +218,48 @@ def speed(console: Console, count: int) -> bool:
         f"{np.median(times):.1f} ms",
         f"{MAX_QUERY_MS:g} ms",
     )
-    table.add_row("the same, 90th percentile", f"{np.percentile(times, 90):.0f} ms", "")
-    table.add_row(f"answered of {count}", f"{answered}", f"{count}")
-    table.add_row("by what", ", ".join(f"{k or 'at once'} {v}" for k, v in fallbacks.items()), "")
+    late = float(np.percentile(times, 90))
+    table.add_row("the same, 90th percentile", f"{late:.1f} ms", f"{MAX_LATE_QUERY_MS:g} ms")
+    table.add_row("the same, longest", f"{max(times):.1f} ms", "")
+    table.add_row(
+        "most of it in one frame of play, 90th percentile, longest",
+        f"{np.percentile(steps, 90):.1f}, {max(steps):.1f} ms",
+        f"{MAX_STEP_MS:.1f} ms",
+    )
+    table.add_row("requests in which a part follows the legs", f"{followed} of {count}", "")
     console.print(table)
-    return graph_s <= MAX_GRAPH_S and memory <= MAX_MEMORY_MB and answered == count
+    return graph_s <= MAX_GRAPH_S and memory <= MAX_MEMORY_MB and late <= MAX_LATE_QUERY_MS
 
 
 def _ask(
     planner: TransitionPlanner, parts: PartGraphs, count: int
-) -> tuple[list[float], dict[str, int]]:
-    """Return the times of requests [ms], and by what they were answered."""
+) -> tuple[list[float], list[float], int]:
+    """Return the times of requests in play and of their longest steps [ms].
+
+    The last is in how many of them a part follows the legs.
+    """
     rng = np.random.default_rng(7)
     frames = parts.library
     kept = np.flatnonzero(parts.kept)
     goals = {clip: frames.clip_of == clip for clip in np.unique(frames.clip_of[kept]).tolist()}
     for each in goals.values():
         parts.graphs[0].to_go(each & parts.kept)
-    times, fallbacks = [], dict.fromkeys(("", "arrival", "window", "standard", "legs"), 0)
+    times, longest, followed = [], [], 0
     for _ in range(count):
         request, target = int(rng.choice(kept)), goals[int(rng.choice([*goals]))]
-        start = time.process_time()
-        fallbacks[planner.plan(request, target).fallback] += 1
-        times.append(1e3 * (time.process_time() - start))
-    return times, fallbacks
+        planning, steps = planner.plan_in_steps(request, target), []
+        while True:
+            start = time.process_time()
+            try:
+                next(planning)
+            except StopIteration as end:
+                followed += end.value.fallback == "legs"
+                break
+            finally:
+                steps.append(1e3 * (time.process_time() - start))
+        times.append(sum(steps))
+        longest.append(max(steps))
+    return times, longest, followed
 
 
 def joint_weights(console: Console) -> None:

@@ -85,32 +85,44 @@ class HopCosts:
 
     @staticmethod
     def of_few_jumps(
-        edges: Edges, starts: tuple[int, ...], hops: int, target: int, slack: int
+        edges: Edges,
+        starts: tuple[int, ...],
+        hops: int,
+        target: int,
+        slack: int,
+        between: bool = False,
     ) -> "HopCosts":
         """Return the costs of paths with one jump that leaves a start and one that lands.
 
-        They are the same one, or a third clip is between them. A landing is at most `slack` frames
-        off the target, which is what plays at time 0 in the clip to reach. A time takes an effort
-        in proportion to the nodes, instead of the edges.
+        They are the same one, or a third clip is between them; or, with a jump `between` them, a
+        fourth. A landing is at most `slack` frames off the target, which is what plays at time 0 in
+        the clip to reach. A time takes an effort in proportion to the nodes, instead of the edges.
         """
         sources, weights, reached, firsts = edges.by_target
         ends = np.append(firsts, len(sources))
         times = np.arange(hops + 1)[:, None]
         bounds = np.searchsorted(reached, target + times + [-slack, slack + 1])
+        landings = [slice(int(ends[a]), int(ends[b])) for a, b in bounds.tolist()]
+        lands = _lands(edges, [sources[own] for own in landings]) if between else None
         costs = np.full((hops + 1, edges.count), inf, np.float32)
+        once = np.full(edges.count, inf, np.float32)  # with one jump until now
         for time in range(hops + 1):
             now = costs[time]
             if time:
                 before = costs[time - 1]
                 np.add(before[:-1], edges.onward, out=now[1:])
+                if lands is not None:
+                    _jump_between(edges, once, now, lands[time])
+                    once[1:], once[0] = once[:-1] + edges.onward, inf
                 start = starts[time - 1] if time <= len(starts) else -1
                 if start >= 0:
                     own = edges.edges_from(start)
-                    landing = edges.targets[own]
-                    now[landing] = np.minimum(now[landing], edges.weights[own])
+                    for reaching in (now, once):
+                        landing = edges.targets[own]
+                        reaching[landing] = np.minimum(reaching[landing], edges.weights[own])
                 a, b = bounds[time]
                 if a < b:
-                    own = slice(ends[a], ends[b])
+                    own = landings[time]
                     totals = before.take(sources[own]) + weights[own]
                     least = np.minimum.reduceat(totals, firsts[a:b] - firsts[a])
                     now[reached[a:b]] = np.minimum(now[reached[a:b]], least)
@@ -133,3 +145,30 @@ class HopCosts:
             nodes.append(int(own[np.argmin(totals)]))
             time -= 1
         return np.array(nodes[::-1])
+
+
+def _lands(edges: Edges, sources: list[Nodes]) -> NDArray[np.bool_]:
+    """Return from which node, left alone, a jump lands at the end, (times, nodes).
+
+    `sources` are the nodes from which there is one that lands at each time.
+    """
+    lands = np.zeros((len(sources), edges.count), bool)
+    goes_on = np.isfinite(edges.onward)
+    for time in range(len(sources) - 2, -1, -1):
+        lands[time, :-1] = lands[time + 1, 1:] & goes_on
+        lands[time, sources[time + 1]] = True
+    return lands
+
+
+def _jump_between(
+    edges: Edges, once: NDArray[np.float32], now: NDArray[np.float32], lands: NDArray[np.bool_]
+) -> None:
+    """Let costs now include those of a jump from nodes that one jump has reached."""
+    nodes = np.flatnonzero(np.isfinite(once))
+    counts = edges.firsts[nodes + 1] - edges.firsts[nodes]
+    begins = np.cumsum(counts) - counts
+    own = np.repeat(edges.firsts[nodes] - begins, counts) + np.arange(counts.sum())
+    totals = np.repeat(once[nodes], counts)
+    keep = lands[edges.targets[own]]
+    own = own[keep]
+    np.minimum.at(now, edges.targets[own], totals[keep] + edges.weights[own].astype(np.float32))

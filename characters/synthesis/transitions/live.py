@@ -15,6 +15,7 @@ from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.characters.synthesis.transitions.playback import GraphPlayer, extrapolate
 from cubeling.characters.synthesis.transitions.progressive import TransitionPlanner
 from cubeling.characters.synthesis.transitions.stitching import LowPass, StitchedMotion, stitch
+from cubeling.characters.synthesis.transitions.transition import Transition
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""
@@ -26,6 +27,7 @@ LIVE_LOW_PASS = LowPass(sigma_frames=3.0, ramp_frames=12)
 """The filter in play; at the defaults of M2.5 the velocity changes 1.8 times as fast as in the
 clips."""
 
+_MOST_PARTS = 6  # of a split profile
 _SAMPLED_FRAMES = 32  # played frames that can still be sampled
 
 
@@ -75,8 +77,9 @@ class StandardSource:
 class PartsSource:
     """Plays the graphs of the parts; a `GraphPlayback`.
 
-    A transition is planned as a whole and played until all parts have arrived. What was shown goes
-    over into it by a decaying offset, so it may begin in the very frame of the request.
+    A transition is planned for a frame that comes soon, a part of the body a frame, and played
+    until all parts have arrived. Where no frames come, it is planned at once. What was shown goes
+    over into it by a decaying offset.
     """
 
     def __init__(self, planner: TransitionPlanner, start: int) -> None:
@@ -86,6 +89,7 @@ class PartsSource:
 
     def start(self, frame: int) -> None:
         """Begin anew at a frame, whatever was played."""
+        self._planning: _Planning | None = None
         self._planned: StitchedMotion | None = None
         self._time = 0  # in the planned transition
         self._begun = 0  # its time at the request
@@ -99,7 +103,9 @@ class PartsSource:
         """Go on towards the goals, and return how the root moves on the way."""
         onward = natural(self.library, self.frame, goals & self._planner.graphs.kept)
         if onward is None and (self._planned is None or self._time >= self._planned.arrived):
-            self._plan(goals)
+            onward = self._plan(goals)
+        else:
+            self._planning = None
         step, pose = self._step_on(onward)
         self._step, self._before, self.pose = step, self.pose, pose
         return RootDelta(*step.tolist())
@@ -123,9 +129,32 @@ class PartsSource:
             self._planned = None
         return step, pose
 
-    def _plan(self, goals: Goals) -> None:
-        """Plan a transition, into which goes over what is shown."""
-        transition = self._planner.plan(self.frame, goals)
+    def _plan(self, goals: Goals) -> int | None:
+        """Plan on; return the next frame of the clip, or None if the transition plays now."""
+        frames, library = self._ahead(), self.library
+        planning = self._planning
+        if planning is None or not planning.serves(self.frame, goals):
+            planning = _Planning(self._planner, frames[-1], goals)
+        planning.advance()
+        if self.frame != planning.request:
+            self._planning = planning
+            return int(library.successors[self.frame])
+        self._planning = None
+        self._begin(planning.finish())
+        return None
+
+    def _ahead(self) -> list[int]:
+        """Return this frame and those that come, as many as planning takes, while they are kept."""
+        graphs, frames = self._planner.graphs, [self.frame]
+        while len(frames) < len(graphs.parts):
+            onward = int(self.library.successors[frames[-1]])
+            if onward < 0 or not graphs.kept[onward]:
+                break
+            frames.append(onward)
+        return frames
+
+    def _begin(self, transition: Transition) -> None:
+        """Play a transition, into which goes over what is shown."""
         planned = stitch(self._planner.graphs, transition, LIVE_LOW_PASS)
         now = planned.before
         onward = extrapolate(self._before, self.pose)
@@ -137,6 +166,36 @@ class PartsSource:
         )
         self._drift = OffsetDecay(self._step - planned.steps[now], np.zeros(3), OFFSET_S)
         self._planned, self._time, self._begun = planned, now, now
+
+
+class _Planning:
+    """A transition that is planned a part at a time."""
+
+    def __init__(self, planner: TransitionPlanner, request: int, goals: Goals) -> None:
+        self.request = request
+        """The frame from which it leaves."""
+        self._goals = goals
+        self._steps = planner.plan_in_steps(request, goals)
+        self._found: Transition | None = None
+
+    def serves(self, frame: int, goals: Goals) -> bool:
+        """Return whether it leads from a frame to come, or this one, to the same goals."""
+        near = 0 <= self.request - frame < _MOST_PARTS
+        return near and np.array_equal(goals, self._goals)
+
+    def advance(self) -> None:
+        """Plan a part, if any is left."""
+        if self._found is None:
+            try:
+                next(self._steps)
+            except StopIteration as end:
+                self._found = end.value
+
+    def finish(self) -> Transition:
+        """Plan what is left and return the transition."""
+        while self._found is None:
+            self.advance()
+        return self._found
 
 
 class LiveMotion:

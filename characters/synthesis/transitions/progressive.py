@@ -3,7 +3,7 @@
 Source: Fernández-Baena 2015, chapter 3.3 (M2.4).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, islice, pairwise
 from typing import Literal
@@ -58,7 +58,7 @@ class SearchSettings:
 
     many_edges: int = 20_000
     """In a part's graph with more edges, paths of many jumps are looked for only where there is
-    none of two: their search takes a time in proportion to the edges."""
+    none of two or three: their search takes a time in proportion to the edges."""
 
 
 class TransitionPlanner:
@@ -86,14 +86,7 @@ class TransitionPlanner:
         CharacterError
             If the frame is not in all graphs, or no goal is.
         """
-        goals = goals & self.graphs.kept
-        if not self.graphs.kept[request]:
-            raise CharacterError(f"frame {request} is not in the graphs of all parts")
-        if not goals.any():
-            raise CharacterError(
-                "what is asked for is not in the graphs of all parts: its frames were pruned; "
-                "raise the threshold or add clips"
-            )
+        goals = self._reachable(request, goals)
         found = self._narrow(request, goals)
         if found is not None:
             return found
@@ -107,6 +100,41 @@ class TransitionPlanner:
         move = _move(whole, whole.path(request, goals))
         others = (replace(move, cost=0.0),) * (len(self.graphs.parts) - 1)
         return Transition(request, (move, *others), fallback)
+
+    def plan_in_steps(self, request: int, goals: Goals) -> Generator[None, None, Transition]:
+        """Plan a transition for play, one part between two yields, and return it.
+
+        A part has a way of at most three jumps, or it follows the legs: in the windows, more jumps
+        are ten in a quarter of a second, which shake, and to look for them takes longer than a
+        frame lasts.
+
+        Raises
+        ------
+        CharacterError
+            As for `plan`.
+        """
+        goals = self._reachable(request, goals)
+        prior = self._first(request, goals)
+        moves, fallback = [prior], ""
+        for part in range(1, len(self.graphs.parts)):
+            yield
+            move = self._bound(part, request, prior, self.settings.window, few=True)
+            if move is None:
+                move, fallback = replace(prior, cost=0.0), "legs"
+            moves.append(move)
+        return Transition(request, tuple(moves), fallback)
+
+    def _reachable(self, request: int, goals: Goals) -> Goals:
+        """Return the goals that are in the graphs of all parts; there are some."""
+        goals = goals & self.graphs.kept
+        if not self.graphs.kept[request]:
+            raise CharacterError(f"frame {request} is not in the graphs of all parts")
+        if not goals.any():
+            raise CharacterError(
+                "what is asked for is not in the graphs of all parts: its frames were pruned; "
+                "raise the threshold or add clips"
+            )
+        return goals
 
     def _narrow(self, request: int, goals: Goals) -> Transition | None:
         """Return the transition that plays cheapest of the first few in the usual window."""
@@ -184,8 +212,10 @@ class TransitionPlanner:
         length, required = len(path) - 1, arrival - departure
         return required > 0 and abs(length - required) <= self.settings.tolerance * required + 1e-9
 
-    def _bound(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
-        """Return the cheapest path whose length fits."""
+    def _bound(
+        self, part: int, request: int, prior: PartMove, window: int, few: bool = False
+    ) -> PartMove | None:
+        """Return the cheapest path whose length fits; of `few` jumps, if so."""
         starts, arrivals = self._windows(request, prior, window)
         first = next((time for time, start in enumerate(starts) if start >= 0), None)
         if first is None:  # the clip ends before
@@ -197,7 +227,7 @@ class TransitionPlanner:
         ends = np.where(fits, ends, first) - first
         target = int(prior.frames[-1]) - (prior.arrival - first)
         for table in self._tables(
-            part, tuple(starts[first:]), int(ends.max()), target, int(near.max())
+            part, tuple(starts[first:]), int(ends.max()), target, int(near.max()), few
         ):
             costs = np.where(fits, table.costs[ends, frames[:, None]], np.inf)
             for option in np.argsort(costs, axis=None).tolist():
@@ -212,13 +242,15 @@ class TransitionPlanner:
         return None
 
     def _tables(
-        self, part: int, starts: tuple[int, ...], hops: int, target: int, slack: int
+        self, part: int, starts: tuple[int, ...], hops: int, target: int, slack: int, few: bool
     ) -> Iterator[HopCosts]:
         """Yield the costs of a part's paths: in a large graph first of those of few jumps."""
         edges = self.graphs.graphs[part].edges
-        if len(edges) > self.settings.many_edges:
+        if few or len(edges) > self.settings.many_edges:
             yield HopCosts.of_few_jumps(edges, starts, hops, target, slack)
-        yield HopCosts.of(edges, starts, hops)
+            yield HopCosts.of_few_jumps(edges, starts, hops, target, slack, between=True)
+        if not few:
+            yield HopCosts.of(edges, starts, hops)
 
     def _shortest(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
         """Return the cheapest of the cheapest paths between both windows whose lengths fit."""
