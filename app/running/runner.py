@@ -64,7 +64,6 @@ def run(
     except KeyboardInterrupt:
         summary.interrupted = True
     finally:
-        gc.unfreeze()
         runner.close()
     summary.robot_log = session.robot.log()
     summary.lens = lens_notice(
@@ -89,7 +88,8 @@ class _Runner:
         self._times = session.monitor.times
         self._start: float | None = None
         self._shown_at = 0.0
-        self._loaded = False
+        self._freezes = not gc.get_freeze_count()  # else somebody does who knows more
+        self._frozen = False
 
     def run(self) -> None:
         screen = self._session.screen
@@ -106,6 +106,8 @@ class _Runner:
                 return
 
     def close(self) -> None:
+        if self._frozen:
+            gc.unfreeze()
         self._gaps.close()
         self._controls.close()
         self._transport.close()
@@ -171,10 +173,10 @@ class _Runner:
             self._progress(step)
         self._times.lap("other")
         if drawn:
-            if not self._loaded:
+            if self._freezes and not self._frozen:
                 # What is loaded stays: to search all of it for cycles takes as long as frames.
                 gc.freeze()
-                self._loaded = True
+                self._frozen = True
             self._times.end_frame()
         else:  # the times are those of the frames that are shown
             self._times.drop_frame()
