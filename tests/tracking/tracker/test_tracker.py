@@ -82,13 +82,14 @@ def test_a_small_lone_face_square_on_is_unsure_and_a_near_one_is_seen() -> None:
         assert not state.visible or off(state.camera_from_cube, pose)[1] < 0.5
 
 
-def test_a_crisp_lone_marker_is_trusted_where_its_perspective_tells_its_lean() -> None:
+@pytest.mark.parametrize("lean", [(0.07, 0.05), (0.0, 0.0)])
+def test_a_crisp_lone_marker_is_trusted_also_square_on(lean: tuple[float, float]) -> None:
     """20 mm of paper at 120 px: 5 % of such prints would lean it by more than 8°, and not this."""
     marker = {"name": "front", "marker_id": 7}
     document = {"dictionary": "DICT_6X6_250", "edge_mm": 30, "marker_mm": 20, "face": [marker]}
     cube = CubeModel.from_document(document, "test", "one marker")
     long = CAMERA.lengthen(3.0, None)
-    pose = held(0.07, 0.05, 0.3, at=(0, 0, 0.32))
+    pose = held(*lean, 0.3, at=(0, 0, 0.32))
     picture = photograph(scene((cube, pose), camera=long))
     state, _ = show_until_decided(CubeTracker(cube, long), picture)
     assert state.visible
