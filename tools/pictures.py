@@ -33,6 +33,7 @@ from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.panels import PANELS
+from cubeling.app.ui.playback.corner_buttons import ROOM_BELOW
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.status import PlaybackMark, Position, SessionStatus
 from cubeling.app.ui.window import Window
@@ -79,7 +80,7 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
         closing.callback(playground.close)
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         closing.callback(virtual_robot.close)
-        layout = CardLayout()
+        layout, layer = CardLayout(ROOM_BELOW), PlaybackLayer((scenario,), Path(), {}, lambda: None)
         for frame in source:
             step = playground.step(frame)
             if not waiting or step.picture is None:
@@ -93,6 +94,9 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
             _, name = waiting.pop(0)
             if name == "window":
                 picture = in_window(picture, scenario, frame.timestamp, source.duration or 0.0)
+            else:
+                for card in layer.cards(source.size):  # the buttons in the corner
+                    card.blend_over(picture)
             path = FOLDER / f"{scenario}-{name}.jpg"
             cv2.imwrite(str(path), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
             Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")

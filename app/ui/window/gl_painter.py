@@ -63,7 +63,8 @@ class GLPainter:
         screen.viewport = (0, 0, wide, high)
         # Without a graphics card, clearing what is drawn over takes a quarter of the time.
         if place.whole != place.window:
-            screen.clear(*(each / 255 for each in reversed(AROUND_BGR)))
+            blue, green, red = AROUND_BGR
+            screen.clear(red / 255, green / 255, blue / 255)
         top = high - place.top
         screen.viewport = (place.left, top - place.shown[1], *place.shown)
         self._context.disable(moderngl.DEPTH_TEST | moderngl.BLEND | moderngl.CULL_FACE)
@@ -84,7 +85,7 @@ class GLPainter:
         screen.viewport = (0, 0, *self._window_size)
 
     def show(self) -> None:
-        """Swap the buffers."""
+        """Swap the back buffer to the front, without waiting for the screen."""
         glfw.swap_buffers(self._window)
 
     def pixels(self) -> Picture:

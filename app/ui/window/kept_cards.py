@@ -35,6 +35,6 @@ class KeptCards(Generic[Made]):
         return kept[1]
 
     def clear(self) -> None:
-        """Drop all."""
+        """Drop what is kept of every card."""
         self._used = {}
         self.begin()

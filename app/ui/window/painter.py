@@ -26,7 +26,7 @@ class Placement:
     """Left edge of the picture, and of what is below it."""
 
     top: int
-    """Top edge."""
+    """Top edge of the picture, from the top of the window."""
 
     whole: tuple[int, int]
     """Width and height of the picture with what is below it."""

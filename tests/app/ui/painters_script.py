@@ -1,8 +1,8 @@
 """Paints a window in both ways, and looks at the screen; `test_window` runs this in a process."""
 
 import os
-import sys
 from pathlib import Path
+from typing import Any
 
 import glfw
 import numpy as np
@@ -16,7 +16,7 @@ from tests.virtual_screen import screen_pixels
 
 SIZE = (320, 200)
 
-WAYS = {
+WAYS: dict[str, dict[str, Any]] = {
     "plain": {},
     "mirrored": {"mirrored": True},
     "dimmed": {"brightness": 0.45},
@@ -32,7 +32,9 @@ def main(screen: Path) -> None:
     canvas.text(20, 60, "words", 40, (10, 20, 200))
     cards = [canvas.card(30, 40), canvas.card(-100, 350), canvas.card(400, -30)]
     with WindowSurface(SIZE, "painters") as window:
-        assert [type(each) for each in window._painters] == [GLPainter, MemoryPainter]
+        opengl, memory = window._painters
+        assert isinstance(opengl, GLPainter)
+        assert isinstance(memory, MemoryPainter)
         for shown_size in (SIZE, (400, 200), (500, 400)):  # margins beside it, and above and below
             glfw.set_window_size(window._window, *shown_size)
             while window._framebuffer_size != shown_size:
@@ -49,7 +51,7 @@ def main(screen: Path) -> None:
                 # Below the picture nothing is painted where a timeline follows.
                 assert difference.max() <= 3, (name, shown_size, difference.max())
                 window.present()
-                window._painters[1]._shared.pixels(*shown_size)  # waits for the server
+                memory._shared.pixels(*shown_size)  # waits for the server
                 x, y = glfw.get_window_pos(window._window)
                 seen = screen_pixels(screen)[y : y + shown_size[1], x : x + shown_size[0], :3]
                 np.testing.assert_array_equal(seen, painted[1])
@@ -59,4 +61,4 @@ def main(screen: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(os.environ["SCREEN_FILE"]))

@@ -28,6 +28,7 @@ def on_screen(tmp_path):
     folders = {name: str(tmp_path) for name in ("HOME", "XDG_CONFIG_HOME", "APPDATA")}
     folders["PYTHONPATH"] = str(Path(__file__).parents[3])  # scripts import `tests`
     with VirtualScreen() as screen:
+        folders["SCREEN_FILE"] = str(screen.file)
 
         def run(*arguments):
             return subprocess.run(
@@ -39,7 +40,6 @@ def on_screen(tmp_path):
                 timeout=120,
             )
 
-        run.screen = screen
         yield run
 
 
@@ -51,7 +51,7 @@ def test_the_window_shows_the_picture_and_handles_keys(on_screen, bundled_sessio
 
 @pytest.mark.slow(reason="a window is opened")
 def test_without_a_graphics_card_a_window_is_painted_in_memory_as_opengl_paints_it(on_screen):
-    done = on_screen(PAINTERS_SCRIPT, on_screen.screen.file)
+    done = on_screen(PAINTERS_SCRIPT)
     assert done.returncode == 0, done.stderr
 
 
