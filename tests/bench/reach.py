@@ -57,6 +57,7 @@ from cubeling.characters.control.layers.gaze import GazeLayer
 from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.control.layers.reach import ReachLayer
 from cubeling.characters.ik.reaching import HandTarget
+from cubeling.characters.ik.reaching.placed_tree import Settled
 from cubeling.characters.ik.reaching.tree import (
     FOOT_AHEAD,
     FOOT_BEHIND,
@@ -64,6 +65,7 @@ from cubeling.characters.ik.reaching.tree import (
     UPPER_MASS,
     UPPER_MIDDLE,
 )
+from cubeling.characters.ik.reaching.whole_body import PlacedBody
 from cubeling.characters.model.standing import idle_clips
 from cubeling.characters.skeleton.anatomy import SIDES
 from cubeling.characters.skeleton.natural_limits import natural_limits
@@ -75,7 +77,8 @@ PLACES, CALLS, FRAMES = 1500, 3000, 400
 MAX_COST = 0.04
 GLTF = Path(__file__).parents[3] / "shared" / "data" / "gltf"
 OTHERS = ("RobotExpressive", "CesiumMan", "RiggedFigure", "BrainStem")
-SETTLING_STEPS = 60
+MOST_SETTLING, AT_REST_RAD = 15, 1e-3
+"""A tree is at rest when it moves less than this in `FIRST_STEPS`."""
 
 
 def least_ms(work: Callable[[int], object], calls: int) -> float:
@@ -206,6 +209,16 @@ def whole_row(character: Character) -> list[str]:
     ]
 
 
+def at_rest(placed: PlacedBody, start: Settled | None) -> Settled:
+    """Return the tree where it moves no more, which takes long for what is out of reach."""
+    settled = placed.settle(start=start)
+    for _ in range(MOST_SETTLING):
+        before, settled = settled, placed.settle(start=settled)
+        if np.abs(np.subtract(before, settled)).max() < AT_REST_RAD:
+            break
+    return settled
+
+
 def whole_turns(character: Character, pose: Pose) -> float:
     """Return the share of places in front for which no joint turns by 5° a centimetre."""
     whole, arm = character.whole_body, character.upper_body.arms["left"]
@@ -223,7 +236,7 @@ def whole_turns(character: Character, pose: Pose) -> float:
         for where in (place, place + step):
             placed = whole.place(pose, left=HandTarget(where))
             assert placed is not None
-            settled = placed.settle(start=settled, steps=SETTLING_STEPS)
+            settled = at_rest(placed, settled)
             turned.append(placed.bring(settled).rotations)
         cosine = min(float(np.abs((turned[0] * turned[1]).sum(-1)).min()), 1.0)
         gentle += np.degrees(2 * np.arccos(cosine)) / (STEP_MM / 10) < 5.0

@@ -18,6 +18,8 @@ from cubeling.characters.speech import DATABASES, RANGES, SpeechProfile, viseme_
 SLIDERS = {
     "gesture_emphasis": "Gestures",
     "face_emphasis": "Face",
+    "liveliness": "Whole body",
+    "cube_emphasis": "Emphasis by the cube",
     "accent_threshold": "Accents from",
     "accent_distance": "Between accents [s]",
     "threshold": "Gestures' unlikeness",

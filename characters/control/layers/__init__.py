@@ -15,6 +15,7 @@ LIVELINESS = Registry[LayerFactory](
     {
         "speech": f"{_LAYERS}.speech:SpeechLayer",
         "sitting_up": f"{_LAYERS}.sitting_up:SittingUpLayer",
+        "fingers": f"{_LAYERS}.fingers:FingersLayer",
         "stance": f"{_LAYERS}.behaviour:StanceLayer",
         "gestures": f"{_LAYERS}.gestures:GestureLayer",
         "clips": f"{_LAYERS}.clips:ClipLayer",
