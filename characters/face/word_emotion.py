@@ -29,8 +29,8 @@ NEGATION_REACH = 2
 LEAD_S = 0.35
 """A face shows what a sentence tells so long before its first word [s]."""
 
-LINGER_S = 0.6
-"""And keeps it so long after the last one [s]."""
+LINGER_S = 1.5
+"""And keeps it so long after the last one: a smile that is back at once was not meant [s]."""
 
 TOLD_SHARE = 0.85
 """Share of the emotion of a word that its mention tells."""

@@ -50,6 +50,11 @@ SENTENCE = (
     "But never, never drop it: that hurts."
 )
 
+MOODS = (
+    "How could you forget me in the rain? I was so sad. "
+    "But look, the sun is out, and I am happy that you are here: let us play again!"
+)
+
 RATE_HZ = 25.0
 FRAMES_DRAWN = 2  # one of so many: drawing takes most of the time
 SIZE_PX = 1280, 670
@@ -57,8 +62,29 @@ TITLE_PX = 30
 EDGE_SHARE = 0.2
 """Edge of the cube that is held, as a part of the body's height."""
 
-STEPS = ((0.5, ""), (4.0, "reach low"), (7.5, "reach far"), (12.0, "hold"), (14.0, ""))
+STEPS = (
+    (0.5, ""),
+    (4.0, "reach low"),
+    (7.5, "reach far"),
+    (11.0, "reach high"),
+    (14.5, "reach aside"),
+    (20.5, "hold"),
+    (30.5, "carry"),
+    (33.5, ""),
+)
 """Until when [s] the stranger reaches for what."""
+
+PLACES = {
+    "reach low": (0.15, 0.12, 0.3),
+    "reach far": (-0.3, 0.75, 0.45),
+    "reach high": (0.1, 1.15, 0.25),
+    "reach aside": (-0.45, 0.25, 0.2),
+    "hold": (0.0, 0.5, 0.26),
+}
+"""Where, in parts of the body's height: left, up and ahead."""
+
+CARRY = (0.12, 0.2, 1.8)
+"""How far a held cube goes aside and down, in parts of the body's height, and its pace [rad/s]."""
 
 HANDS: tuple[tuple[Hand, float], ...] = (("left", 1.0), ("right", -1.0))
 """Each hand, and on which side of the cube it is: left is positive."""
@@ -109,9 +135,10 @@ def main() -> None:
     lines = open_lines(None, "en")
     try:
         scenes += [
-            _speaker(human, lines, "The same sentence, all but the face frozen", frozen=True),
-            _speaker(human, lines, "The same sentence, alive", frozen=False),
-            _speaker(stranger, lines, "A person of a VRM without clips speaks", frozen=False),
+            _speaker(human, lines, SENTENCE, "A sentence, all but the face frozen", frozen=True),
+            _speaker(human, lines, SENTENCE, "The same sentence, alive"),
+            _speaker(stranger, lines, SENTENCE, "A person of a VRM without clips speaks"),
+            _speaker(stranger, lines, MOODS, "Her face follows her words"),
         ]
     finally:
         lines.close()
@@ -148,9 +175,11 @@ def _poses(recording: BehaviourRecording) -> list[Pose]:
     return [recording.clip.poses[number] for number in range(len(recording.clip))]
 
 
-def _speaker(body: Character, lines: LineSource, title: str, frozen: bool) -> Scene:
+def _speaker(
+    body: Character, lines: LineSource, text: str, title: str, *, frozen: bool = False
+) -> Scene:
     player = BehaviourPlayer(body, lines)
-    block = _block(f"<speech><text>{SENTENCE}</text></speech>")
+    block = _block(f"<speech><text>{text}</text></speech>")
     recording = record_behaviour(player, [block], RATE_HZ)
     poses = _poses(recording)
     if frozen:
@@ -168,15 +197,20 @@ def _reaching(body: Character) -> Take:
         now = number / RATE_HZ
         doing = next(what for end, what in STEPS if now < end)
         times = Times(begun.setdefault(doing, now), begun[doing] + 0.9)
-        intent = _intent(doing, times, size) if doing else None
+        intent = _intent(doing, times, size, now - begun[doing]) if doing else None
         poses.append(placed_pose(animator.update(CharacterCommand(now, behaviour=intent))))
     return Take("", body, poses)
 
 
-def _intent(doing: str, times: Times, size: float) -> BehaviourIntent:
-    """Return what asks for one thing; places are parts of the body's height on the table."""
-    if doing == "hold":
-        middle = size * np.array([0.0, 0.5, 0.26])
+def _intent(doing: str, times: Times, size: float, since: float) -> BehaviourIntent:
+    """Return what asks for one thing, `since` so long [s]; `size` is the body's height [m]."""
+    if doing in ("hold", "carry"):
+        middle = np.array(PLACES["hold"])
+        if doing == "carry":
+            aside, down, rate = CARRY
+            turn = rate * since
+            middle += [aside * math.sin(turn), -down * (1.0 - math.cos(turn)) / 2.0, 0.0]
+        middle *= size
         out = np.array([1.0, 0.0, 0.0])
         half = size * EDGE_SHARE / 2
         reaches = tuple(
@@ -186,8 +220,7 @@ def _intent(doing: str, times: Times, size: float) -> BehaviourIntent:
             for hand, sign in HANDS
         )
     else:
-        low = doing == "reach low"
-        middle = size * np.array([0.15, 0.12, 0.3] if low else [-0.3, 0.75, 0.45])
+        middle = size * np.array(PLACES[doing])
         reaches = (ReachIntent(doing, middle, times),)
     return BehaviourIntent(reaches=reaches, gazes=(GazeIntent(doing, middle, times, "HEAD"),))
 

@@ -53,6 +53,10 @@ MOST_LAG = 0.2
 FLOW_TENSION = 0.5
 """By how much full fluidity lowers the tension."""
 
+PATH_TENSION = 0.5
+"""Greatest tension at the points of a path between two keys: with more, a circle is a polygon whose
+hand stops at each corner. At keys hands stop the more."""
+
 WIDE_RAD = math.radians(140.0)
 """A joint that turns further from key to key follows the arc from one to the other: a cubic of its
 quaternion would cross the middle at a bound [rad]."""
@@ -148,7 +152,10 @@ class GestureMotion:
         # A positive continuity turns corners inside out (Kochanek and Bartels 1984), which nobody
         # would call fluid: above 0, hands pass their keys faster and trail more instead.
         flow, corner = max(style.fluidity, 0.0), min(style.fluidity, 0.0)
-        self._tcb = replace(style, fluidity=corner, tension=style.tension - FLOW_TENSION * flow)
+        tension = style.tension - FLOW_TENSION * flow
+        self._tcb = replace(style, fluidity=corner, tension=min(tension, PATH_TENSION))
+        self._key_speed = (1.0 - max(tension, PATH_TENSION)) / (1.0 - PATH_TENSION)
+        self._on_path = {key.number for key in keys if key.way == "path"}
         self._held_speed = HELD_SPEED + (1.0 - HELD_SPEED) * flow
         self._lags = joints.lags * (1.0 + style.fluidity)
         self._segments: dict[int, _Segment] = {}
@@ -240,6 +247,8 @@ class GestureMotion:
             slope, number = length * tangents[key], self._numbers[low + key]
             if number in self._numbers[max(low + key - 1, 0) : low + key + 2 : 2]:
                 slope *= self._held_speed
+            if number not in self._on_path:
+                slope *= self._key_speed
             slope[wide[max(key - 1, 0) : key + 1].any(axis=0)] = 0.0
             if number >= 0:
                 slope[self._stops[number]] = 0.0

@@ -34,8 +34,11 @@ DRIFT_HZ = 0.12, 0.38
 STROKE_KEYS = ((-0.55, 0.0), (-0.2, 1.0), (0.0, -0.35), (0.6, 0.0))
 """A beat of a resting hand, from the accent [s]: up, down through the accent, and back."""
 
-LEAD_S, TAIL_S = 0.5, 0.9
+LEAD_S, TAIL_S = 0.3, 0.9
 """From how long before a speech to how long after it the arms live [s]."""
+
+JOIN_S = 1.5
+"""How long they take to that: quicker, an arm at rest swings out before the first word [s]."""
 
 
 def arm_movement(
@@ -56,7 +59,7 @@ def arm_movement(
     swings = np.concatenate([SWING_DEG, SWING_DEG * rng.uniform(0.5, 0.8)])
     rates = math.tau * rng.uniform(*DRIFT_HZ, 2 * len(ARM_MOVEMENTS))
     phases = rng.uniform(0.0, math.tau, 2 * len(ARM_MOVEMENTS))
-    here = smoothstep(((times + LEAD_S) / LEAD_S).clip(0.0, 1.0))
+    here = smoothstep(((times + LEAD_S) / JOIN_S).clip(0.0, 1.0))
     here *= smoothstep(((end + TAIL_S - times) / TAIL_S).clip(0.0, 1.0))
     held = np.tile(OPEN_DEG, 2) + np.sin(np.outer(times, rates) + phases) * np.tile(DRIFT_DEG, 2)
     held += np.outer(syllable_swing(times, syllables), swings)
