@@ -7,7 +7,7 @@ import numpy as np
 from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.smoothing import low_pass
 
 CURL_DEG = (4.0, 5.0, 3.0)
@@ -53,7 +53,11 @@ class FingersLayer:
                 owners.append(number)
                 turned.append(joint)
         self._joints = np.array(turned, np.intp)
-        self._halves = 0.5 * np.array(axes).reshape(-1, 3)
+        halves = 0.5 * np.array(axes).reshape(-1, 3)
+        pure = np.concatenate([halves, np.zeros((len(halves), 1))], axis=1)
+        # What is multiplied from the right by half a rotation vector, as a matrix for rows.
+        self._halves = rotations.multiply(np.eye(4), pure[:, None])
+        self._squares = np.vecdot(halves, halves)[:, None]
         self._owners = np.array(owners, np.intp)
         self._hands = np.array([hand.side == "right" for hand, *_ in fingers], np.intp)
         rng = np.random.default_rng([seed, 6])
@@ -70,16 +74,12 @@ class FingersLayer:
         size = self._size * context.rest * context.expressivity.amplitude
         if not len(self._joints) or size < 1e-3:
             return pose
-        local = pose.rotations.copy()
-        local[self._joints] = rotations.multiply(local[self._joints], self._turns(size))
-        return Pose(pose.translations, local, pose.scales, pose.morphs)
-
-    def _turns(self, size: float) -> Array:
-        """Return the turns of the joints now, (joints, 4)."""
         waves = np.sin(self._rates * self._time + self._phases)
         curls = size * (waves[:-2] + HAND_SHARE * waves[-2:][self._hands])
-        turns = np.empty((len(self._joints), 4))
-        np.multiply(self._halves, curls[self._owners][:, None], out=turns[:, :3])
-        # So small an angle is its sine, to a thousandth.
-        turns[:, 3] = np.sqrt(1.0 - np.vecdot(turns[:, :3], turns[:, :3]))
-        return turns
+        sines = curls[self._owners][:, None]
+        local = pose.rotations.copy()
+        own = local[self._joints]
+        # Half angles so small are their sines, to a thousandth.
+        across = (own[:, None] @ self._halves)[:, 0]
+        local[self._joints] = np.sqrt(1.0 - self._squares * sines * sines) * own + sines * across
+        return Pose(pose.translations, local, pose.scales, pose.morphs)
