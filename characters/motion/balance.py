@@ -11,6 +11,10 @@ FAR_BEYOND_HEIGHTS = 0.1
 """Hips this far beyond the feet are held by nothing but speed [body heights]."""
 
 
+MAX_UNLEANED_M_S2 = 1.0
+"""How fast a bend that is added may turn the velocity of a body that does not lean into it [m/s²]:
+it would have to by 6°."""
+
 GRAVITY_M_S2 = 9.81
 
 

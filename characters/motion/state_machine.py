@@ -153,17 +153,17 @@ class StateMachine:
         if state != self.state:
             self._enter(state, None, time, crossfade, begin)
 
-    def play(self, motion: Motion, time: float) -> None:
+    def play(self, motion: Motion, time: float, length: float | None = None) -> None:
         """Play a motion from its start on, by inertialization; the state has no name then.
 
-        `time` [s] is not before the last request.
+        `time` [s] is not before the last request; a `length` [s] is that of this transition alone.
 
         Raises
         ------
         CharacterError
             If it is.
         """
-        self._enter("", motion, time, 0.0, None)
+        self._enter("", motion, time, 0.0, None, length)
 
     def _enter(
         self,
@@ -172,6 +172,7 @@ class StateMachine:
         time: float,
         crossfade: float,
         begin: Callable[[], None] | None,
+        length: float | None = None,
     ) -> None:
         if time < self.entered:
             raise CharacterError(
@@ -191,7 +192,7 @@ class StateMachine:
                 begin()
             switch = _Switch(time, state, motion, None, None, last, crossfade)
         else:
-            switch = self._inertialize(last, state, motion, time, begin)
+            switch = self._inertialize(last, state, motion, time, begin, length or self.length)
         # Two switches are enough to look back over one frame.
         self._switches = [last, switch]
 
@@ -202,6 +203,7 @@ class StateMachine:
         motion: Motion | None,
         time: float,
         begin: Callable[[], None] | None,
+        length: float,
     ) -> _Switch:
         # Forward differences: before its start, a loop with a gap would jump.
         old = (self._sample(last, time), self._sample(last, time + _VELOCITY_STEP_S))
@@ -217,8 +219,8 @@ class StateMachine:
             time,
             state,
             motion,
-            Inertialization.begin(old, new, _VELOCITY_STEP_S, self.length),
-            OffsetDecay(drift, np.zeros(3), self.length),
+            Inertialization.begin(old, new, _VELOCITY_STEP_S, length),
+            OffsetDecay(drift, np.zeros(3), length),
         )
 
     def sample(self, time: float) -> Pose:

@@ -16,6 +16,7 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.motion_library import library_of
+from cubeling.characters.motion.balance import MAX_UNLEANED_M_S2
 from cubeling.characters.motion.motion import Motion, RootDelta
 from cubeling.characters.motion.state_machine import StateMachine
 from cubeling.characters.retargeting.retarget import retarget
@@ -45,9 +46,6 @@ TEMPO_LIMITS = (0.85, 1.15)
 MAX_BEND_RAD_S, MAX_WIDE_BEND_RAD_S = 0.5, 1.5
 """By how much the root may turn besides what the clip turns, towards the target [rad/s]; the second
 where the graph does not turn by itself to both sides."""
-
-MAX_UNLEANED_M_S2 = 1.0
-"""How fast a bend may change the direction of a body that does not lean into it [m/s²]: 6°."""
 
 MAX_RAISED_HEIGHTS = 0.02
 """A foot this far above where its clip has it is not held on the ground [body heights]."""

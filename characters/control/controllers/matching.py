@@ -29,6 +29,7 @@ from cubeling.characters.locomotion.gaits import IDLE_SPEED, RUN_SPEED, TOP_SPEE
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, has_arrived
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.motion_library import mirror_or_none
+from cubeling.characters.motion.balance import MAX_UNLEANED_M_S2
 from cubeling.characters.motion.contacts import find_contacts
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.motion.state_machine import StateMachine
@@ -198,7 +199,7 @@ class MatchingController:
         sudden |= abs(math.remainder(error + here.yaw - way, math.tau)) > SUDDEN_TURN_RAD
         self.motion.match(time, ahead, sudden)
         if self._pace_now > STANDING_PACE * self._height and abs(error) < MAX_ADJUSTED_RAD:
-            most = ADJUSTMENT_RATE * elapsed
+            most = min(ADJUSTMENT_RATE, MAX_UNLEANED_M_S2 / self._pace_now) * elapsed
             turn = min(max(error - low_pass(error, 0.0, elapsed, ADJUSTMENT_LAG_S), -most), most)
             self.place = replace(self.place, yaw=self.place.yaw + turn)
 

@@ -75,6 +75,12 @@ class MotionDatabase:
     upper: NDArray[np.intp]
     """The joints above the hips, which may play another clip than the legs."""
 
+    joints: FeatureJoints
+    """The joints that are compared."""
+
+    acceleration: float
+    """Of hands and feet in the clips; one moment in a thousand has more [m/s²]."""
+
     @staticmethod
     def of(
         clips: Sequence[Clip], skeleton: Skeleton, anatomy: Anatomy, mirror: Mirror | None = None
@@ -109,6 +115,8 @@ class MotionDatabase:
             FeatureSpace.of(features, LEG_WEIGHTS),
             FeatureSpace.of(features, ARM_WEIGHTS) if joints.hands else None,
             upper,
+            joints,
+            _acceleration(features),
         )
 
     def __len__(self) -> int:
@@ -224,6 +232,16 @@ class MotionDatabase:
              for clip in self.clips]
         )  # fmt: skip
         return np.sort(walked)
+
+
+def _acceleration(features: Sequence[Mapping[str, Array]]) -> float:
+    """Return the largest acceleration of hands and feet but for one moment in a thousand [m/s²]."""
+    found = [np.zeros(1)]
+    for each in features:
+        for name in ("foot velocities", "hand velocities"):
+            changes = np.diff(each[name].reshape(len(each[name]), -1, 3), axis=0) * ROW_RATE_HZ
+            found.append(np.linalg.norm(changes, axis=-1).ravel())
+    return max(float(np.quantile(np.concatenate(found), 0.999)), 1.0)
 
 
 def _joints(skeleton: Skeleton, anatomy: Anatomy) -> tuple[FeatureJoints, NDArray[np.intp]]:

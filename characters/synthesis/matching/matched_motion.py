@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from cubeling.characters.motion.motion import Motion, RootDelta
 from cubeling.characters.motion.state_machine import StateMachine
 from cubeling.characters.skeleton.pose import Array, Pose
@@ -12,8 +14,15 @@ from cubeling.characters.synthesis.matching.database import MotionDatabase, Play
 SEARCH_INTERVAL_S = 0.1
 """Time between searches without a reason [s]."""
 
-TRANSITION_S = 0.3
-"""Length of a transition by inertialization [s]."""
+TRANSITION_S, MAX_TRANSITION_S = 0.3, 0.6
+"""Length of a transition by inertialization [s]; it is longer where hands or feet would be pulled
+harder than the clips ever do."""
+
+PULL = 0.5
+"""How hard the difference of two motions may pull hands and feet, as a share of the largest
+acceleration in the clips: the motions have their own besides."""
+
+_OFFSET_PEAK, _VELOCITY_PEAK = 5.77, 4.0  # largest second derivatives of `quintic_decay`
 
 MIN_PLAY_S = 0.2
 """Time between jumps without a reason [s]."""
@@ -46,9 +55,10 @@ class _From:
 class _BodyPartPlayback:
     """What a part of the body plays."""
 
-    def __init__(self, database: MotionDatabase, head: Playhead) -> None:
+    def __init__(self, database: MotionDatabase, head: Playhead, ends: tuple[int, ...]) -> None:
         self._database = database
         self._head = head
+        self._ends = list(ends)  # of its limbs
         self._searched = 0.0
         self.machine = StateMachine({"": self._motion(head)}, "", TRANSITION_S)
 
@@ -68,8 +78,24 @@ class _BodyPartPlayback:
         if found is None or self._near(now, found):
             return False
         self._head = found
-        self.machine.play(self._motion(found), time)
+        motion = self._motion(found)
+        self.machine.play(motion, time, self._transition_length(motion, time))
         return True
+
+    def _transition_length(self, motion: Motion, time: float) -> float:
+        """Return how long it takes to pass over to a motion without a pull [s]."""
+        if not self._ends:
+            return TRANSITION_S
+        step = 1.0 / 60.0
+        poses = [self.machine.sample(time + t) for t in (0.0, step)]
+        poses += [motion.sample(t) for t in (0.0, step)]
+        at = Pose.of_frames(poses).globals(self._database.skeleton)[..., :3, 3][:, self._ends]
+        apart = at[:2] - at[2:]
+        away = float(np.linalg.norm(apart[0], axis=-1).max())
+        speed = float(np.linalg.norm(apart[1] - apart[0], axis=-1).max()) / step
+        most = PULL * self._database.acceleration
+        needed = max(math.sqrt(_OFFSET_PEAK * away / most), _VELOCITY_PEAK * speed / most)
+        return min(max(needed, TRANSITION_S), MAX_TRANSITION_S)
 
     def _near(self, now: Playhead, found: Playhead) -> bool:
         clip = self._database.clips[now.clip]
@@ -103,8 +129,8 @@ class MatchedMotion:
 
     def restart(self, start: Playhead) -> None:
         """Begin at a moment of the database; its time is 0 again."""
-        self._legs = _BodyPartPlayback(self.database, start)
-        self._arms = _BodyPartPlayback(self.database, start)
+        self._legs = _BodyPartPlayback(self.database, start, self.database.joints.feet)
+        self._arms = _BodyPartPlayback(self.database, start, self.database.joints.hands)
 
     def match(self, time: float, ahead: Callable[[], Mapping[str, Array]], sudden: bool) -> None:
         """Jump, at a time [s], where frames suit better than those that come next.
