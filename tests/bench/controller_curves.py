@@ -2,8 +2,9 @@
 
 Strips of the character and curves of hips, knees and wrists while it is asked to walk, run, turn,
 walk and stand, for each controller, and on CMU recordings (`shared/data/cmu-mocap`) where these are
-there. Needs the extra `plots`. With `-o side-by-side.mp4` it is a video of all side by side, over
-dots on the ground that show feet that slide.
+there, or on those of one `--set` of `tests.bench.controllers`. Needs the extra `plots`. With
+`-o side-by-side.mp4` it is a video of all side by side, over dots on the ground that show feet that
+slide; `--set 16 -o film.mp4` is the tree beside the other three on recordings of one person.
 """
 
 import argparse
@@ -44,7 +45,7 @@ from cubeling.characters.rendering import (
 from cubeling.characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
 from cubeling.characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
 from cubeling.characters.skeleton import rotations
-from tests.bench.controllers import CMU
+from tests.bench.controllers import CMU, SETS
 from tests.bench.feet import FRAME_RATE
 
 SCRIPT = (
@@ -92,10 +93,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--output", required=True, type=Path,
                         help="a .png or .jpg picture, or a .mp4 video")  # fmt: skip
-    output = parser.parse_args().output
+    parser.add_argument("--set", choices=[name.replace(", ", "+") for name in SETS],
+                        help="recordings that all but the tree walk with")  # fmt: skip
+    options = parser.parse_args()
+    output = options.output
     character = Character.load("human")
     runs: dict[str, list[PosedCharacter]] = {}
     for name in CONTROLLER_CHOICES:
+        if options.set is not None:
+            motions = () if name == "tree" else SETS[options.set.replace("+", ", ")]
+            controller = choose_controller(name, character, [str(path) for path in motions])
+            runs[name if name == "tree" else f"{name}, {options.set}"] = walked(
+                character, controller
+            )
+            continue
         runs[name] = walked(character, choose_controller(name, character))
         if name != "tree" and CMU.is_dir():
             label = f"{name} on CMU recordings"
