@@ -97,7 +97,9 @@ def open_session(
     cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
     scenario = scenario_of(options, options.scenario, cube)
     character = load_to_play(
-        options.character or scenario.character, own_motions_only=options.own_motions_only
+        options.character or scenario.character,
+        own_motions_only=options.own_motions_only,
+        whole_limbs=options.whole_limbs,
     )
     if options.idle is not None:
         if options.controller != "tree":

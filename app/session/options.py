@@ -42,6 +42,9 @@ class SessionOptions:
     own_motions_only: bool = False
     """Whether a character without clips stays in its rest pose, and plays nobody else's."""
 
+    whole_limbs: bool = True
+    """Whether a character's detached feet move with its shins; not in what was recorded before."""
+
     language: str | None = None
     """Code of the language in which the character speaks, or "none" for silence; None for that of
     a recording, or English in a window."""
@@ -172,6 +175,7 @@ class SessionOptions:
             "motions": "\n".join(self.motions),
             "idle": "" if self.idle is None else str(self.idle),
             "own_motions_only": "yes" if self.own_motions_only else "no",
+            "whole_limbs": "yes" if self.whole_limbs else "no",
             "speed_map": self.speed_map,
             "turns": f"{self.turns:g}",
             "personality": self.personality or "",
@@ -203,6 +207,7 @@ class SessionOptions:
             idle=Path(metadata["idle"]) if metadata.get("idle") else None,
             # What was recorded before there were lent motions had none.
             own_motions_only=metadata.get("own_motions_only", "yes") == "yes",
+            whole_limbs=metadata.get("whole_limbs", "no") == "yes",
             speed_map=metadata.get("speed_map", "corrected"),
             turns=turn_gain,
             personality=metadata.get("personality") or None,

@@ -1,10 +1,9 @@
-"""Plain skeletons for bodies without clips: whole limbs, with toes, and bones without scales.
+"""Plain skeletons: whole limbs for all; for bodies without clips, toes and bones without scales.
 
 Rigs for inverse kinematics often have the feet below the armature, so that a foot stays where it is
-while its shin swings. A body without clips of its own does not need that.
+while its shin swings. Its own clips move both; whatever else moves the shin tears them apart.
 """
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -12,46 +11,43 @@ import numpy as np
 from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.limb_ends import with_more_joints
+from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.measures import foot_gap
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
-from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
+from cubeling.characters.skeleton.detached import leaders_of_detached
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 
-_LIMBS = (
-    *(("Foot", ("LowerLeg",)), ("FrontFoot", ("FrontLowerLeg",)), ("Hand", ("LowerArm",))),
-    *(("Toes", ("Foot",)), ("FrontToes", ("FrontFoot",))),
-)
 _MAX_UNEVEN = 1e-3  # of scales along three axes
-_TRUNK = ("neck", "upperChest", "chest", "spine", "hips")
+_MAX_GAP = 0.001  # between shin and foot, in parts of the leg: nobody sees it
 
 
 def with_attached_limbs(character: Character) -> Character:
-    """Return a character without clips whose detached parts move with their limbs.
+    """Return a character whose detached parts move with their limbs.
 
-    Nothing moves at rest. A character whose parts are all below their limbs is returned as it is.
+    Nothing moves at rest and in its own clips. A character whose parts are all below their limbs is
+    returned as it is.
     """
     skeleton = character.skeleton
-    leaders = dict(_leaders(skeleton, character.anatomy))
+    leaders = leaders_of_detached(skeleton, character.anatomy)
     if not leaders:
         return character
     parents = [leaders.get(joint, parent) for joint, parent in enumerate(skeleton.parents)]
     order = _parents_first(parents)
     number = {old: new for new, old in enumerate(order)} | {-1: -1}
-    places = skeleton.rest.globals(skeleton)
-    rest = _with_local_placements(skeleton.rest, places, leaders)
+    rest = _led(skeleton.rest, skeleton, leaders, order)
     places_of_old = np.array([number[joint] for joint in range(len(skeleton))])
     return replace(
         character,
         skeleton=Skeleton(
             tuple(skeleton.names[joint] for joint in order),
             tuple(number[parents[joint]] for joint in order),
-            Pose(
-                rest.translations[order],
-                rest.rotations[order],
-                None if rest.scales is None else rest.scales[order],
-                rest.morphs,
-            ),
+            rest,
         ),
+        clips={
+            name: replace(clip, poses=_led(clip.poses, skeleton, leaders, order))
+            for name, clip in character.clips.items()
+        },
         meshes=tuple(
             replace(
                 mesh,
@@ -61,6 +57,32 @@ def with_attached_limbs(character: Character) -> Character:
             for mesh in character.meshes
         ),
     )
+
+
+def with_whole_limbs(character: Character) -> Character:
+    """Return a character with clips whose legs reach their detached feet, and then lead them.
+
+    Where a leg of a clip ends elsewhere, the knee bends so that it ends at the foot, or the foot is
+    where the stretched leg ends. A character whose parts are all below their limbs is returned as
+    it is.
+    """
+    if not leaders_of_detached(character.skeleton, character.anatomy):
+        return character
+    rig = Rig(character.skeleton, character.anatomy)
+    clips = {
+        name: replace(clip, poses=_with_reached_feet(clip.poses, rig))
+        for name, clip in character.clips.items()
+    }
+    return with_attached_limbs(replace(character, clips=clips))
+
+
+def _with_reached_feet(poses: Pose, rig: Rig) -> Pose:
+    """Return poses (frames, …) in which detached feet are where their legs end."""
+    for leg in rig.legs:
+        if not leg.attached and foot_gap(poses, rig, [leg]) > _MAX_GAP:
+            feet = rig.placements(poses, [leg.foot])[:, leg.foot, :3, 3]
+            poses = place_ankle(poses, rig, leg, feet)
+    return poses
 
 
 def without_rest_scales(character: Character) -> Character:
@@ -123,27 +145,6 @@ def with_toe_ends(character: Character) -> Character:
     return replace(character, skeleton=longer, meshes=meshes)
 
 
-def _leaders(skeleton: Skeleton, anatomy: Anatomy) -> Iterator[tuple[int, int]]:
-    """Yield each detached joint and the joint that is to lead it."""
-    joints, parents = anatomy.joints, [*skeleton.parents]
-
-    def with_ancestors(joint: int) -> Iterator[int]:
-        while joint >= 0:
-            yield joint
-            joint = parents[joint]
-
-    wanted = [(s + part, tuple(s + a for a in above)) for part, above in _LIMBS for s in SIDES]
-    wanted += [("head", _TRUNK), *((f"{side}Eye", ("head",)) for side in SIDES)]
-    for part, above in wanted:
-        joint = joints.get(part)
-        leader = next((joints[name] for name in above if name in joints), None)
-        if joint is None or leader is None or leader in with_ancestors(joint):
-            continue
-        if joint not in with_ancestors(leader):  # else it would lead itself
-            parents[joint] = leader  # the next ones see it, or two could lead each other
-            yield joint, leader
-
-
 def _parents_first(parents: list[int]) -> list[int]:
     """Return the joints in an order in which parents come before their children."""
     order: list[int] = []
@@ -156,15 +157,22 @@ def _parents_first(parents: list[int]) -> list[int]:
     return order
 
 
-def _with_local_placements(rest: Pose, places: Array, leaders: dict[int, int]) -> Pose:
-    """Return a rest pose in which joints are placed relative to their leaders."""
-    translations, turns, scales = rest.translations.copy(), rest.rotations.copy(), rest.scales
-    scales = None if scales is None else scales.copy()
+def _led(poses: Pose, skeleton: Skeleton, leaders: dict[int, int], order: list[int]) -> Pose:
+    """Return poses (…, joints) that look the same, with joints below their leaders, in an order."""
+    places = poses.globals(skeleton)
+    translations, turns = poses.translations.copy(), poses.rotations.copy()
+    scales = None if poses.scales is None else poses.scales.copy()
     for joint, leader in leaders.items():
-        local = np.linalg.inv(places[leader]) @ places[joint]
-        sizes = np.linalg.norm(local[:3, :3], axis=0)
-        translations[joint] = local[:3, 3]
-        turns[joint] = rotations.from_matrix(local[:3, :3] / np.maximum(sizes, 1e-12))
+        local = np.linalg.inv(places[..., leader, :, :]) @ places[..., joint, :, :]
+        sizes = np.linalg.norm(local[..., :3, :3], axis=-2)
+        translations[..., joint, :] = local[..., :3, 3]
+        turned = local[..., :3, :3] / np.maximum(sizes, 1e-12)[..., None, :]
+        turns[..., joint, :] = rotations.from_matrix(turned)
         if scales is not None:
-            scales[joint] = sizes
-    return replace(rest, translations=translations, rotations=turns, scales=scales)
+            scales[..., joint, :] = sizes
+    return Pose(
+        translations[..., order, :],
+        turns[..., order, :],
+        None if scales is None else scales[..., order, :],
+        poses.morphs,
+    )

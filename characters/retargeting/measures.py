@@ -52,10 +52,13 @@ def bone_change(poses: Pose, rig: Rig) -> float:
     return float(np.abs(lengths[1] / at_rest - 1.0).max())
 
 
-def foot_gap(poses: Pose, rig: Rig) -> float:
-    """Return how far a foot is from the end of its shin at most, as a share of the leg."""
+def foot_gap(poses: Pose, rig: Rig, legs: Sequence[LegJoints] | None = None) -> float:
+    """Return how far a foot is from the end of its shin at most, as a share of the leg.
+
+    `legs` are those that count; None for all.
+    """
     gaps = [0.0]
-    for leg in rig.legs:
+    for leg in rig.legs if legs is None else legs:
         placements = rig.placements(poses, [leg.lower, leg.foot])
         apart = placements[:, leg.foot, :3, 3] - ankle_positions(placements, rig, leg)
         gaps.append(float(np.linalg.norm(apart, axis=-1).max()) / rig.leg_length)

@@ -180,6 +180,7 @@ def replay(
             motions=tuple(motions) if motions else () if controller else recorded.motions,
             idle=idle or recorded.idle,
             own_motions_only=own_motions_only or (character is None and recorded.own_motions_only),
+            whole_limbs=character is not None or recorded.whole_limbs,
             personality=personality or recorded.personality,
             robot=robot,
             robot_settings=robot_settings,

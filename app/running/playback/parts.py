@@ -114,7 +114,10 @@ def _characters(session: OpenedSession) -> Iterator[MenuChoice]:
 
 
 def _open_character(session: OpenedSession, name: str) -> Character:
-    return load_to_play(name, own_motions_only=session.options.own_motions_only)
+    options = session.options
+    return load_to_play(
+        name, own_motions_only=options.own_motions_only, whole_limbs=options.whole_limbs
+    )
 
 
 def _exchange_character(

@@ -45,6 +45,14 @@ def test_metadata_keep_whether_a_character_plays_its_own_motions_only(own):
     assert again.own_motions_only is own
 
 
+def test_detached_feet_stay_so_in_what_was_recorded_before_they_were_led():
+    options = SessionOptions(scenario="follow", source="camera:0")
+    metadata = options.metadata()
+    assert SessionOptions.from_metadata(metadata, "session.mcap").whole_limbs
+    del metadata["whole_limbs"]
+    assert not SessionOptions.from_metadata(metadata, "session.mcap").whole_limbs
+
+
 def test_a_session_from_before_there_were_lent_motions_is_replayed_without_them():
     options = SessionOptions.from_metadata({"scenario": "follow"}, "session.mcap")
     assert options.own_motions_only

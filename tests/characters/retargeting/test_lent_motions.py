@@ -9,13 +9,18 @@ import pytest
 from cubeling.characters import Animator, Character, RootDelta, with_lent_motions
 from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import skin
-from cubeling.characters.retargeting.attached_limbs import with_attached_limbs, with_toe_ends
+from cubeling.characters.motion.clip import Clip
+from cubeling.characters.retargeting.attached_limbs import (
+    with_attached_limbs,
+    with_toe_ends,
+    with_whole_limbs,
+)
 from cubeling.characters.retargeting.hanging_arms import ArmClearance, share_inside
 from cubeling.characters.retargeting.lent_motions import LentClips
 from cubeling.characters.retargeting.measures import foot_gap
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.characters.skeleton.pose import Pose, Skeleton
 from tests.characters.commands import command
 from tests.characters.formats.built_gltf import SAMPLES
 
@@ -163,6 +168,33 @@ def test_a_foot_that_a_rig_has_elsewhere_is_led_by_its_shin(human):
     np.testing.assert_allclose(np.concatenate(rest), np.concatenate(before), atol=1e-6)
     lent = with_lent_motions(torn)
     assert foot_gap(lent.clips["jump"].poses, Rig(lent.skeleton, lent.anatomy)) < 0.01
+
+
+def test_legs_of_its_own_clips_reach_a_foot_that_a_rig_has_elsewhere(human):
+    torn = _with_foot_at_root(human)
+    rest = torn.skeleton.rest
+    count, hips = 20, torn.anatomy.joints["hips"]
+    translations = np.tile(rest.translations, (count, 1, 1))
+    # Hips that sink and sway take the thighs with them; the left foot stays at the root.
+    translations[:, hips, 1] -= 0.08 * np.linspace(0.0, 1.0, count)
+    translations[:, hips, 0] += 0.04 * np.linspace(0.0, 1.0, count)
+    clip = Clip(
+        "sway", 30.0, Pose(translations, np.tile(rest.rotations, (count, 1, 1))), loop=False
+    )
+    own = replace(torn, clips={"sway": clip})
+    whole = with_whole_limbs(own)
+    poses, rig = whole.clips["sway"].poses, Rig(whole.skeleton, whole.anatomy)
+    assert foot_gap(clip.poses, Rig(own.skeleton, own.anatomy)) > 0.08
+    assert foot_gap(poses, rig) < 0.001
+    stood, stands = (
+        each.clips["sway"].poses.globals(each.skeleton)[:, each.anatomy.joints["leftFoot"]]
+        for each in (own, whole)
+    )
+    np.testing.assert_allclose(stands, stood, atol=2e-3)
+    swayed = poses.translations.copy()
+    swayed[:, whole.anatomy.joints["leftUpperLeg"]] += 0.05  # what any layer may do
+    assert foot_gap(replace(poses, translations=swayed), rig) < 0.001
+    assert with_whole_limbs(replace(human, clips={"sway": clip})).clips["sway"] is clip
 
 
 def test_toes_that_carry_the_shin_are_not_led_by_the_foot_that_it_leads(human):
