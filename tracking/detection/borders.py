@@ -95,7 +95,7 @@ def _dark_pixels(grey: Image) -> Image:
     return np.asarray(cv2.bitwise_and(dark, stands_out), np.uint8)
 
 
-def _is_large(outline: Array) -> bool:
+def _is_large(outline: cv2.typing.MatLike) -> bool:
     """Whether an outline, (N, 1, 2), is that of a blob as large as a marker."""
     if len(outline) < MIN_BLOB_EXTENT_PX:  # at least one point in each row
         return False

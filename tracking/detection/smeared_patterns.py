@@ -85,8 +85,10 @@ def _smeared_patterns(dictionary: str, marker_ids: tuple[int, ...], count: int) 
 
 def _smear(black: Flags, count: int) -> Floats:
     """Draw a marker with every blur, (smears, count²)."""
-    fine = np.kron((~black).astype(np.float32), np.ones((SAMPLES_PER_CELL,) * 2, np.float32))
-    white = np.asarray(np.pad(fine, round((count - len(fine)) / 2), constant_values=1.0))
+    ones = np.ones((SAMPLES_PER_CELL,) * 2, np.float32)
+    fine = np.asarray(np.kron((~black).astype(np.float32), ones), np.float32)
+    margin = round((count - len(fine)) / 2)
+    white = np.asarray(np.pad(fine, margin, constant_values=1.0), np.float32)
     angles, cell = np.arange(DIRECTIONS) * np.pi / DIRECTIONS, SAMPLES_PER_CELL * TEXELS_PER_SAMPLE
     blurs = ((0.0, 0.0), *product(SMEARS_CELLS, angles))
     kernels = [_sampled_kernel(length * cell, angle) for length, angle in blurs]

@@ -274,7 +274,7 @@ def fit_tones(
         of = columns[:, :used]
         normal, right_side = _summed(weighted, of_tones[:used], seen, of, bounds)
         normal.flat[:: len(normal) + 1] += 1e-3
-        tones = np.linalg.solve(normal, right_side)
+        tones = np.asarray(np.linalg.solve(normal, right_side), np.float64)
         residual = seen - _mixed(tones[of], of_tones[:used], bounds)
         scale = 1.4826 * quantile(np.abs(residual), 0.5) + 0.3
         contrast = float(tones[faces : 2 * faces].max())
