@@ -28,7 +28,7 @@ class Capability:
     """Something that motions may be able to do."""
 
     name: str
-    """What."""
+    """"stand", "walk", "run", "turn left", "turn right", "start" or "stop"."""
 
     there: bool
     """Whether they can, and hold it."""

@@ -156,6 +156,17 @@ def test_a_blend_joins_two_clips_without_a_jump(stored: StoredGraph) -> None:
     assert np.allclose(soft.poses.rotations[-1, elbow], sharp.poses.rotations[-1, elbow])
 
 
+def test_a_clip_that_ends_at_a_jump_goes_on_meanwhile(stored: StoredGraph) -> None:
+    run = stored.library.clip("Run")
+    library = replace(stored.library, loops=np.zeros(len(stored.library.names), bool))
+    frames = [*run, *run[20:]]  # half a cycle off
+    clip = path_clip(library, frames)
+    at = clip.in_place.globals(library.skeleton)[..., :3, 3]
+    jumps = np.linalg.norm(np.diff(at, 2, axis=0), axis=-1).max(1)
+    own = np.linalg.norm(np.diff(library.positions[run], 2, axis=0), axis=-1).max()
+    assert jumps[len(run) - 4 : len(run)].max() < 1.3 * own
+
+
 def test_the_rule_same_shows_the_look_alike_twice(stored: StoredGraph) -> None:
     library, distance = stored.library, thesis_distance(stored.library)
     found = stored.candidates[WHOLE_BODY]

@@ -8,6 +8,7 @@ from cubeling.characters import CharacterError
 from cubeling.characters.retargeting import load_recording
 from cubeling.characters.synthesis.body import default_body_plan, read_body_plan
 from cubeling.characters.synthesis.graphs.building import part_graphs, standard_graph
+from cubeling.characters.synthesis.graphs.edges import Edges
 from cubeling.characters.synthesis.graphs.graph import EdgeCosts
 from cubeling.characters.synthesis.graphs.parts import PartGraphs
 from cubeling.characters.synthesis.graphs.search import HopCosts
@@ -154,12 +155,14 @@ def test_a_part_stays_in_a_clip_for_the_least_run(graphs: PartGraphs, stored: St
     assert min(runs[6]) >= 6 > min(runs[1])
 
 
-def test_paths_of_few_jumps_are_paths_of_the_graph(graphs: PartGraphs) -> None:
+@pytest.mark.parametrize("between", [False, True])
+def test_paths_of_few_jumps_are_paths_of_the_graph(graphs: PartGraphs, between: bool) -> None:
     edges = graphs.graphs[1].edges
     starts = tuple(range(40, 46))
     every = HopCosts.of(edges, starts, 12)
     target = int(np.flatnonzero(graphs.kept)[-1]) - 10
-    few = HopCosts.of_few_jumps(edges, starts, 12, target, 2)
+    few = HopCosts.of_few_jumps(edges, starts, 12, target, 2, between)
+    assert (few.costs <= HopCosts.of_few_jumps(edges, starts, 12, target, 2).costs).all()
     anywhere = HopCosts.of_few_jumps(edges, starts, 12, 0, edges.count)
     assert anywhere.costs == pytest.approx(every.costs, rel=1e-6)  # in single precision
     assert (few.costs >= every.costs * (1 - 1e-6)).all()
@@ -168,6 +171,40 @@ def test_paths_of_few_jumps_are_paths_of_the_graph(graphs: PartGraphs) -> None:
         path = few.path(node, time)
         cost = sum(edges.weight(a, b) for a, b in pairwise(path.tolist()))
         assert every.costs[time, node] - 1e-7 <= cost <= few.costs[time, node] + 1e-7
+
+
+def test_a_jump_between_two_reaches_what_two_jumps_do_not() -> None:
+    # Four clips of five frames; from each the next is reached by one jump.
+    onward = [frame for frame in range(20) if frame % 5 < 4]
+    sources, targets = [*onward, 1, 7, 13], [*(frame + 1 for frame in onward), 6, 12, 18]
+    weights = np.array([1.0] * len(onward) + [10.0, 20.0, 30.0])
+    edges = Edges.of(20, np.array(sources), np.array(targets), weights)
+    two, three = (
+        HopCosts.of_few_jumps(edges, (0, 1), 7, 12, 0, between) for between in (False, True)
+    )
+    assert np.isinf(two.costs[6, 18])
+    assert three.costs[6, 18] == 62.0
+    assert three.costs[7, 19] == 63.0
+    assert three.path(19, 7).tolist() == [1, 6, 7, 12, 13, 18, 19]
+
+
+def test_in_play_a_part_takes_few_jumps_or_follows_the_legs(
+    graphs: PartGraphs, stored: StoredGraph
+) -> None:
+    planner = TransitionPlanner(graphs)
+    following = stored.library.successors
+    run = stored.library.clip_of == stored.library.names.index("Run")
+    for request in np.flatnonzero(graphs.kept & ~run)[::29].tolist():
+        steps = planner.plan_in_steps(request, run)
+        for _ in graphs.parts[1:]:
+            assert next(steps) is None
+        with pytest.raises(StopIteration) as end:
+            next(steps)
+        legs, *others = end.value.value.moves
+        assert run[legs.frames[-1]]
+        for move in others:
+            jumps = int((following[move.frames[:-1]] != move.frames[1:]).sum())
+            assert jumps <= 3 or np.array_equal(move.frames, legs.frames)
 
 
 def test_smoothing_leaves_the_clips_alone(
