@@ -294,21 +294,19 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=ROUNDS, help="of 14 requests each")
     options = parser.parse_args()
     character = Character.load("human")
-    table = Table(title="Controllers on one script: times in frames of 1/60 s, lengths of 1.7 m")
     headings = ("set", "controller", "answer", "TBF", "run settles", "lean", "beyond", "slide")
-    for heading in (*headings, "jump", "ms"):
-        table.add_column(heading, no_wrap=True)
-    for name in options.sets.split(","):
-        name = name.replace("+", ", ")
+    for name in [each.replace("+", ", ") for each in options.sets.split(",")]:
+        table = Table()
+        for heading in (*headings, "jump", "ms"):
+            table.add_column(heading, no_wrap=True)
         motions = tuple(map(str, SETS[name]))
-        if not all(path.exists() for path in SETS[name]):
+        if all(path.exists() for path in SETS[name]):
+            chosen = [c for c in options.controllers.split(",") if c != "tree" or not motions]
+            for number, each in enumerate(chosen):
+                _add_rows(table, character, (name, each), motions, options.rounds, not number)
+        else:
             table.add_row(name, "no recordings")
-            continue
-        chosen = [each for each in options.controllers.split(",") if each != "tree" or not motions]
-        for number, each in enumerate(chosen):
-            _add_rows(table, character, (name, each), motions, options.rounds, not number)
-        table.add_section()
-    Console(width=130).print(table)
+        Console(width=130).print(table)
 
 
 def _add_rows(
