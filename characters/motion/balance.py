@@ -3,6 +3,7 @@
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.characters.skeleton.anatomy import SIDES, Anatomy
 from cubeling.characters.skeleton.pose import Array
@@ -67,7 +68,7 @@ def hips_beyond_feet(
     if acceleration is not None:
         around[..., 1] += (positions[:, hips, 1] * acceleration / GRAVITY_M_S2)[:, None]
     corners = [around[:, number] for number in range(len(feet))]
-    beyond = np.min([np.linalg.norm(corner, axis=-1) for corner in corners], axis=0)
+    beyond: Array = np.min([np.linalg.norm(corner, axis=-1) for corner in corners], axis=0)
     for a, b in combinations(corners, 2):
         beyond = np.minimum(beyond, _distance_to_segment(a, b))
     for triangle in combinations(corners, 3):
@@ -83,8 +84,8 @@ def _distance_to_segment(a: Array, b: Array) -> Array:
     return distance
 
 
-def _is_inside(a: Array, b: Array, c: Array) -> Array:
+def _is_inside(a: Array, b: Array, c: Array) -> NDArray[np.bool_]:
     """Return in which triangles (n, 2) the origin is; not in those without area."""
     turns = np.stack([p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0] for p, q in ((a, b), (b, c), (c, a))])
-    inside: Array = (turns > 0.0).all(0) | (turns < 0.0).all(0)
+    inside: NDArray[np.bool_] = np.all(turns > 0.0, axis=0) | np.all(turns < 0.0, axis=0)
     return inside

@@ -23,9 +23,9 @@ CYCLE_S = (0.5, 1.7)
 MIN_SPEED = 0.2
 """A slower body does not walk [body heights/s]."""
 
-MAX_SEAM = 0.08
+MAX_SEAM, MAX_MIRRORED_SEAM = 0.035, 0.08
 """How unlike the body may be at both ends of a cycle: mean distance of its joints, with a tenth of
-a second of their velocities [body heights]."""
+a second of their velocities [body heights]; the second for a step and its mirror image."""
 
 MAX_SPEED_CHANGE = 0.15
 """By how much the speed may differ between both ends, as a share of their mean."""
@@ -82,9 +82,9 @@ def find_cycles(library: MotionLibrary, mirror: Mirror | None = None) -> Iterato
     """Yield, for each clip that does not loop and each length, the cycles with the best seams."""
     height = _height(library)
     for number, name in enumerate(library.names):
+        frames = library.clip(name)
         if library.loops[number]:
             continue
-        frames = library.clip(name)
         moments = _moments(library, frames, None)
         yield from _cycles(library, frames, moments, moments, False, height)
         if mirror is not None:
@@ -153,7 +153,7 @@ def _cycles(
             continue
         apart = np.linalg.norm(moments[starts] - later[starts + count], axis=1) / height
         best = int(apart.argmin())
-        if apart[best] < MAX_SEAM:
+        if apart[best] < (MAX_MIRRORED_SEAM if mirrored else MAX_SEAM):
             first = int(starts[best])
             turn = 0.0 if mirrored else float(way[first + count, 2] - way[first, 2])
             rate = turn * library.rate / count
