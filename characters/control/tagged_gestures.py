@@ -9,6 +9,7 @@ from cubeling.characters.behaviour.bml.schedule import Scheduler
 from cubeling.characters.behaviour.bml.timing import CannotRealize, Scheduled
 from cubeling.characters.behaviour.gesticon import Gesticon
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.timing import Repeats
 from cubeling.characters.behaviour.intents import BehaviourIntent
 from cubeling.characters.behaviour.realization.character_realizer import CharacterRealizer
 from cubeling.characters.behaviour.realization.frame import RealizationContext
@@ -21,6 +22,16 @@ from cubeling.characters.speech.speech import GestureSpan
 
 HANDS = ("gesture", "clip", "posture")
 """What leaves no hands for the rhythm of a speech."""
+
+LEADS_S = (-0.03, 0.22)
+"""How long an apex leads the accent that it belongs to: the middle half of those of people
+(Fernández-Baena 2015, section 4.3) [s]."""
+
+MOST_SHIFT_S = 0.3
+"""How far the last apex of a gesture is moved to an accent [s]."""
+
+STROKE_SYNCS = {"start", "ready", "strokeStart", "strokeEnd", "relax", "end"}
+"""The times of a gesture whose apex is known."""
 
 
 class TaggedGestures:
@@ -63,15 +74,46 @@ class TaggedGestures:
             return ()
         block = Block(f"text@{speech.start:g}", tuple(map(_behaviour, range(len(spans)), spans)))
         scheduler = Scheduler(block, self._realizer, lambda _: None)
-        return tuple(
-            Scheduled(
-                block.id,
-                track.behaviour,
-                dict(zip(track.timing.syncs, track.times, strict=True)),
-                {},
-            )
-            for track in scheduler.schedule(speech.start, ()).tracks.values()
-        )
+        tracks = scheduler.schedule(speech.start, ()).tracks.values()
+        scheduled = []
+        for track in tracks:
+            syncs = dict(zip(track.timing.syncs, track.times, strict=True))
+            if speech.profile.liveliness:
+                syncs = self._on_accent(track.behaviour, syncs, speech)
+            scheduled.append(Scheduled(block.id, track.behaviour, syncs, {}))
+        return tuple(scheduled)
+
+    def _on_accent(
+        self, behaviour: Behaviour, syncs: dict[str, float], speech: SpeechIntent
+    ) -> dict[str, float]:
+        """Return the times of a gesture with its last apex by an accent, if one is near."""
+        meaning = meaning_of(behaviour, _context(self._character))
+        accents = [speech.start + each.time for each in speech.utterance.accents]
+        if meaning.kind != "gesture" or not accents or not syncs.keys() >= STROKE_SYNCS:
+            return syncs
+        gesture = GestureCollection.load_bundled().get(meaning.name)
+        repeats = Repeats.of(gesture)
+        share = repeats.in_all(repeats.count - 1, gesture.apex * repeats.share)
+        first, last = syncs["strokeStart"], syncs["strokeEnd"]
+        shift = accent_shift(first + share * (last - first), accents)
+        # Preparation and retraction give way, by half of their lengths at most.
+        shift = min(shift, 0.5 * (syncs["end"] - syncs["relax"]))
+        shift = max(shift, -0.5 * (syncs["ready"] - syncs["start"]))
+        return {
+            name: time if name in ("start", "end") else time + shift for name, time in syncs.items()
+        }
+
+
+def accent_shift(apex: float, accents: Sequence[float]) -> float:
+    """Return how far an apex is to move so that it comes with an accent; 0 if none is near [s].
+
+    >>> round(accent_shift(1.0, [1.3]), 6), accent_shift(1.0, [1.1, 3.0]), accent_shift(1.0, [2.0])
+    (0.08, 0.0, 0.0)
+    """
+    least, most = LEADS_S
+    shifts = [accent - apex - min(max(accent - apex, least), most) for accent in accents]
+    nearest = min(shifts, key=abs, default=0.0)
+    return nearest if abs(nearest) <= MOST_SHIFT_S else 0.0
 
 
 def known_gestures(character: Character) -> tuple[str, ...]:

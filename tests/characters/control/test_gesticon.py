@@ -7,9 +7,11 @@ import pytest
 
 from cubeling.affect import Emotion
 from cubeling.characters import Animator, CharacterCommand, RootDelta
+from cubeling.characters.behaviour import GestureCollection
 from cubeling.characters.behaviour.gesticon import Gesticon, Meaning
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.control.layers.clips import clip_joints
+from cubeling.characters.control.speech_profile import SpeechProfile
 from cubeling.characters.control.tagged_gestures import (
     TaggedGestures,
     known_gestures,
@@ -134,3 +136,26 @@ def test_a_clip_takes_the_joints_that_it_moves():
     jumped = apart(played(human, ""), played(human, "jump"))
     assert jumped[:, human.anatomy.joint("rightUpperArm")].max() > 5.0
     assert jumped[:, human.anatomy.joint("leftUpperLeg")].max() < 0.5
+
+
+def stroke_of_beat(accents, *, liveliness=1.0):
+    """Return ready and end of the stroke of a beat that a text of 3 s asks for [s]."""
+    human = bundled_character("human")
+    said = Utterance("a b", "en", 3.0, accents=accents, gestures=(GestureSpan("BEAT", 0.4, 2.4),))
+    speech = SpeechIntent(said, 0.0, SpeechProfile(liveliness=liveliness))
+    tagged = TaggedGestures(human)
+    for number in range(3 * RATE):
+        behaviour = tagged.add(CharacterCommand(number / RATE, speech=speech)).behaviour
+        if behaviour is not None and behaviour.gestures:
+            times = behaviour.gestures[0].times
+            return times.ready, times.stroke_end
+    raise AssertionError("no gesture is asked for")
+
+
+def test_the_last_apex_of_a_gesture_comes_with_an_accent_that_is_near():
+    ready, written = stroke_of_beat(())
+    apex = ready + GestureCollection.load_bundled().get("BEAT").apex * (written - ready)
+    near, far = (Accent(apex + 0.22 + away, 1.0) for away in (0.2, 0.7))
+    assert stroke_of_beat((near,))[1] == pytest.approx(written + 0.2)
+    assert stroke_of_beat((far,))[1] == pytest.approx(written)
+    assert stroke_of_beat((near,), liveliness=0.0)[1] == pytest.approx(written)
