@@ -1,5 +1,7 @@
 """Fingers that live while nothing shapes the hand."""
 
+from typing import Any
+
 import numpy as np
 
 from cubeling.characters import Animator, Character, CharacterCommand
@@ -8,7 +10,7 @@ from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array
 
 
-def finger_turns(animator: Animator, seconds: float, **asked: object) -> Array:
+def finger_turns(animator: Animator, seconds: float, **asked: Any) -> Array:
     """Return how far each finger joint is from its first frame, (frames, joints) [degrees]."""
     hands = animator.character.upper_body.shapes.hands.values()
     joints = [j for hand in hands for finger in hand.fingers.values() for j in finger]
