@@ -13,13 +13,14 @@ from cubeling.characters.skeleton.pose import Array
 def finger_turns(animator: Animator, seconds: float, **asked: Any) -> Array:
     """Return how far each finger joint is from its first frame, (frames, joints) [degrees]."""
     hands = animator.character.upper_body.shapes.hands.values()
-    joints = [j for hand in hands for finger in hand.fingers.values() for j in finger]
+    joints = [j for hand in hands if hand for finger in hand.fingers.values() for j in finger]
     poses = [
         animator.update(CharacterCommand(number / 30, **asked)).pose.rotations[joints]
         for number in range(round(30 * seconds))
     ]
     turned = rotations.multiply(rotations.conjugate(poses[0]), np.array(poses))
-    return np.degrees(np.linalg.norm(rotations.to_rotation_vector(turned), axis=-1))
+    found: Array = np.degrees(np.linalg.norm(rotations.to_rotation_vector(turned), axis=-1))
+    return found
 
 
 def test_fingers_of_who_stands_move_a_little_and_slowly() -> None:
