@@ -31,6 +31,10 @@ TOO_FAST_FACTOR = 2.0
 MIN_FRAMES = 12
 """Cells with fewer frames are no behaviour of their own."""
 
+GAP_S, HOLD_S = 0.5, 0.4
+"""A clip that leaves a behaviour for less than the first time goes on with it; one that has it for
+less than the second does not hold it [s]."""
+
 MAX_DRIFT_RAD = math.radians(30)
 """Who moves in a direction farther from where he faces neither walks nor runs ahead [rad]."""
 
@@ -124,7 +128,7 @@ class Behaviours:
         """
         travel = Travel.of(library)
         rates = np.stack([travel.speed, travel.yaw_rate], axis=-1)
-        kept = kept & _fit_for_play(library, travel, kept)
+        original, kept = kept, kept & _fit_for_play(library, travel, kept)
         cells = np.round(rates / [SPEED_CELL_M_S, YAW_CELL_RAD_S]).astype(np.intp)
         cells[rates[:, 0] < STANDING_M_S] = -1, 0  # whichever way it turns
         _, owner, counts = np.unique(cells[kept], axis=0, return_inverse=True, return_counts=True)
@@ -132,7 +136,10 @@ class Behaviours:
         numbers = np.where(usual, np.cumsum(usual) - 1, -1)
         members = np.full(len(library), -1, np.intp)
         members[kept] = numbers[owner.ravel()]
-        means = [rates[members == number].mean(0) for number in range(int(usual.sum()))]
+        members = held_behaviours(library, members, original)
+        numbers = np.unique(members[members >= 0])
+        members = np.where(members < 0, -1, np.searchsorted(numbers, members))
+        means = [rates[members == number].mean(0) for number in range(len(numbers))]
         return Behaviours(np.array(means), members)
 
     def nearest(self, speed: float, yaw_rate: float, present: int = -1) -> int:
@@ -153,6 +160,36 @@ class Behaviours:
         """Return which frames have a behaviour, (frames,)."""
         found: NDArray[np.bool_] = self.members == behaviour
         return found
+
+
+def held_behaviours(library: MotionLibrary, members: Frames, kept: NDArray[np.bool_]) -> Frames:
+    """Return the behaviour of each frame of a clip that holds it, with short gaps filled, or −1.
+
+    `members` are the behaviours of single frames, (frames,). Only `kept` frames fill a gap. Where
+    nothing is held, they are returned as they are.
+    """
+    found = np.full(len(members), -1, np.intp)
+    gap, hold = GAP_S * library.rate, HOLD_S * library.rate
+    for number, name in enumerate(library.names):
+        frames, loop = library.clip(name), bool(library.loops[number])
+        for behaviour in np.unique(members[frames][members[frames] >= 0]):
+            own = members[frames] == behaviour
+            free = kept[frames] & (members[frames] < 0)
+            for run in _runs(~own, loop):
+                ends = not loop and (run[0] == 0 or run[-1] == len(own) - 1)
+                if len(run) <= gap and not ends and free[run].all():
+                    own[run] = True
+            for run in _runs(own, loop):
+                if len(run) >= hold or (loop and own.all()):
+                    found[frames[run]] = behaviour
+    return found if (found >= 0).any() else members
+
+
+def _runs(flags: NDArray[np.bool_], loop: bool) -> list[Frames]:
+    """Return the runs of set flags in a clip, as frames; in a loop one may pass its end."""
+    order = np.roll(np.arange(len(flags)), -int(np.argmin(flags)) if loop else 0)
+    changes = np.flatnonzero(np.diff(flags[order], prepend=False, append=False))
+    return [order[a:b] for a, b in zip(changes[::2], changes[1::2], strict=True)]
 
 
 def _fit_for_play(

@@ -29,9 +29,12 @@ ms
     Time of a frame with all layers: the median, and the longest.
 
 The sets are our own clips and recordings of others in `shared/data`; the tree plays our own only.
+Exits with 1 if one that is not the tree slides more than `MAX_SLIDE_MM_S`, jumps more than
+`MAX_JUMP`, or leans more than any of the clips.
 """
 
 import argparse
+import sys
 import time
 from collections import defaultdict
 from collections.abc import Sequence
@@ -65,7 +68,14 @@ from cubeling.characters.motion.balance import (
     hips_beyond_feet,
     trunk_lean,
 )
-from tests.bench.feet import BODY_HEIGHT_M, FRAME_RATE, Take, measure, placed_take
+from tests.bench.feet import (
+    BODY_HEIGHT_M,
+    FRAME_RATE,
+    MAX_SLIDE_MM_S,
+    Take,
+    measure,
+    placed_take,
+)
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 CMU = DATA / "cmu-mocap"
@@ -88,6 +98,9 @@ REQUESTS = (
     ("stand", 0),
 )
 """Gait, and by how much the heading changes [degrees], one after the other."""
+
+MAX_JUMP = 1.2
+"""Largest change of velocity at which the benchmark does not fail, as a multiple of the clips'."""
 
 ROUNDS, HOLD_FRAMES, LONGER_FRAMES = 6, 130, 7  # each round asks at other moments of the step
 JOINTS = ("hips", *(side + part for side in ("left", "right") for part in
@@ -286,14 +299,14 @@ def walked_clips(character: Character, controller: CharacterController) -> Seque
     return [clip for name, clip in character.clips.items() if name in {"idle", *NOT_ACTIONS}]
 
 
-def main() -> None:
-    """Print the table."""
+def main() -> int:
+    """Print the table and return an exit code."""
     parser = argparse.ArgumentParser(description="What moves a character, compared.")
     parser.add_argument("--sets", default=",".join(name.replace(", ", "+") for name in SETS))
     parser.add_argument("--controllers", default=",".join(CONTROLLER_CHOICES))
     parser.add_argument("--rounds", type=int, default=ROUNDS, help="of 14 requests each")
     options = parser.parse_args()
-    character = Character.load("human")
+    character, failed = Character.load("human"), False
     headings = ("set", "controller", "answer", "TBF", "run settles", "lean", "beyond", "slide")
     for name in [each.replace("+", ", ") for each in options.sets.split(",")]:
         table = Table()
@@ -303,10 +316,12 @@ def main() -> None:
         if all(path.exists() for path in SETS[name]):
             chosen = [c for c in options.controllers.split(",") if c != "tree" or not motions]
             for number, each in enumerate(chosen):
-                _add_rows(table, character, (name, each), motions, options.rounds, not number)
+                names = name, each
+                failed |= _add_rows(table, character, names, motions, options.rounds, not number)
         else:
             table.add_row(name, "no recordings")
         Console(width=130).print(table)
+    return int(failed)
 
 
 def _add_rows(
@@ -316,12 +331,15 @@ def _add_rows(
     motions: Sequence[str],
     rounds: int,
     first: bool,
-) -> None:
-    """Add the row of a controller, and before the first of a set that of its clips."""
+) -> bool:
+    """Add the row of a controller, and before the first of a set that of its clips.
+
+    Return whether it fails.
+    """
     controller = choose_controller(names[1], character, motions)
     clips = clip_positions(character, walked_clips(character, controller(character, 1.0, None)))
+    leans = [lean_deg(character, each) for each in clips]
     if first:
-        leans = [lean_deg(character, each) for each in clips]
         every = np.concatenate(clips)
         own = f"{lean_deg(character, every):.1f}, {max(leans):.1f}"
         table.add_row(names[0], "clips", "", "", "", own, f"{beyond(character, every):.1f}")
@@ -332,19 +350,22 @@ def _add_rows(
     own_jumps = [velocity_jumps(each[:, joints_of(character)] * scaled) for each in clips]
     jumps = velocity_jumps(seen.before_layers)
     ratios = [np.quantile(jumps, q) / np.quantile(np.concatenate(own_jumps), q) for q in (1, 0.999)]
+    lean, slide = lean_deg(character, seen.positions), measure(seen.take).mean
     table.add_row(
         "",
         names[1],
         f"{np.mean([start for start, _ in found]):.1f}",
         f"{np.mean([end for _, end in found]):.1f}",
         f"{np.median(runs):.0f}, {max(runs)}",
-        f"{lean_deg(character, seen.positions):.1f}",
+        f"{lean:.1f}",
         f"{beyond(character, seen.positions):.1f}",
-        f"{measure(seen.take).mean:.1f}",
+        f"{slide:.1f}",
         f"{ratios[0]:.2f}, {ratios[1]:.2f}",
         f"{np.median(seen.milliseconds):.2f}, {seen.milliseconds.max():.0f}",
     )
+    beyond_clips = slide >= MAX_SLIDE_MM_S or ratios[0] > MAX_JUMP or lean > max(leans)
+    return names[1] != "tree" and bool(beyond_clips)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

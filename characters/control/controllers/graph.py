@@ -13,6 +13,7 @@ from cubeling.characters.control.controllers.controller import ControllerFrame
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.control.controllers.walk import NOT_ACTIONS, WalkController
 from cubeling.characters.errors import CharacterError
+from cubeling.characters.locomotion.gaits import IDLE_SPEED
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, STANDSTILL, SteeringOutput
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.motion_library import library_of
@@ -26,6 +27,7 @@ from cubeling.characters.synthesis.archive import skeleton_identity
 from cubeling.characters.synthesis.behaviours import STANDING_M_S, Behaviours
 from cubeling.characters.synthesis.graphs.building import analyse, part_graphs, standard_graph
 from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph
+from cubeling.characters.synthesis.graphs.runs import RunningWays
 from cubeling.characters.synthesis.graphs.search import CostToGo
 from cubeling.characters.synthesis.graphs.storage import StoredGraph, load_graph
 from cubeling.characters.synthesis.library import MotionLibrary
@@ -151,7 +153,8 @@ class GraphController(WalkController):
 
     def _request(self, steered: SteeringOutput, now: float) -> None:
         """Choose the goals, the tempo and the bend for what is asked for."""
-        speed = self.gaits.pace(steered.speed) * steered.stride if steered.speed > 0.0 else 0.0
+        going = steered.speed > IDLE_SPEED
+        speed = self.gaits.pace(steered.speed) * steered.stride if going else 0.0
         yaw_rate = YAW_RATE_PER_ANGULAR * steered.angular if speed else 0.0
         self._behaviour = self._behaviours.nearest(speed, yaw_rate, self._behaviour)
         self._live.goals = self._behaviours.goals(self._behaviour)
@@ -274,6 +277,9 @@ def fit_graph(stored: StoredGraph, character: Character) -> StoredGraph:
     return replace(stored, library=moved)
 
 
+MIN_RUN_S = 0.12
+"""Time for which a clip is played after a jump, if it goes on [s]: while the jump passes over."""
+
 LIVE_COSTS = EdgeCosts(per_frame=0.02, jump=0.1, most_jumps=4, balance=0.3)
 """What edges cost in play: to wait for a tenth of a second is as dear as a good jump."""
 
@@ -287,7 +293,10 @@ def _standard(stored: StoredGraph) -> Playable:
     behaviours = Behaviours.of(stored.library, graph.kept)
     to_stand = _prepare(graph, behaviours)
     start = _standing_frame(behaviours)
-    return behaviours, lambda: StandardSource(graph, start), to_stand
+    ways = RunningWays(graph, round(MIN_RUN_S * graph.library.rate))
+    for number in range(len(behaviours.means)):
+        ways.prepare(behaviours.goals(number))
+    return behaviours, lambda: StandardSource(ways, start), to_stand
 
 
 def _parts(stored: StoredGraph) -> Playable:

@@ -10,7 +10,7 @@ from cubeling.characters.motion.blend import mix
 from cubeling.characters.motion.inertialization import Inertialization, OffsetDecay
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.skeleton.pose import Array, Pose
-from cubeling.characters.synthesis.graphs.graph import MotionGraph
+from cubeling.characters.synthesis.graphs.runs import RunningWays
 from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.characters.synthesis.transitions.playback import GraphPlayer, extrapolate
 from cubeling.characters.synthesis.transitions.progressive import TransitionPlanner
@@ -54,21 +54,25 @@ class GraphPlayback(Protocol):
 class StandardSource:
     """Plays the graph of the whole body; a `GraphPlayback`."""
 
-    def __init__(self, graph: MotionGraph, start: int) -> None:
-        self.library = graph.library
-        self._graph = graph
+    def __init__(self, ways: RunningWays, start: int) -> None:
+        self.library = ways.graph.library
+        self._ways = ways
         self.start(start)
 
     def start(self, frame: int) -> None:
         """Begin anew at a frame, whatever was played."""
         self._player = GraphPlayer(self.library, frame)
+        self._run = 0  # frames since the last jump
         self.frame = frame
         self.pose = self._player.pose()
 
     def advance(self, goals: Goals) -> RootDelta:
         """Go on towards the goals, and return how the root moves on the way."""
-        onward = natural(self.library, self.frame, goals & self._graph.kept)
-        self.frame = self._graph.next(self.frame, goals) if onward is None else onward
+        onward = natural(self.library, self.frame, goals & self._ways.graph.kept)
+        if onward is None:
+            onward = self._ways.next(self.frame, self._run, goals)
+        self._run = self._run + 1 if onward == self.library.successors[self.frame] else 0
+        self.frame = onward
         step = self._player.advance(self.frame)
         self.pose = self._player.pose()
         return step

@@ -104,6 +104,11 @@ def test_a_file_that_many_actions_name_is_read_once(tmp_path, monkeypatch) -> No
     path = tmp_path / "many.xml"
     path.write_text(f"<blendingschedule><actionpool>{pool}</actionpool>{order}</blendingschedule>")
     human, read = Character.load("human"), []
-    monkeypatch.setattr(Character, "load", staticmethod(lambda name: read.append(name) or human))
+
+    def load(name):
+        read.append(name)
+        return human
+
+    monkeypatch.setattr(Character, "load", staticmethod(load))
     assert len(read_schedule(path, human).actions) == 30
     assert read == ["human"]

@@ -72,6 +72,21 @@ def test_where_no_motion_stands_it_stands_by_its_own_clip_and_goes_on(
         assert states[-RATE_HZ:] == ["idle"] * RATE_HZ
 
 
+def test_it_stands_soon_after_it_is_asked_to(human: Character, factory) -> None:
+    """A Speed that fades is the Speed of one who stands long before it is 0."""
+    target = np.array([0.0, 50.0])
+    animator = Animator(human, controller=factory)
+    places = []
+    for number in range(6 * RATE_HZ):
+        goes = number < 2 * RATE_HZ
+        going = LocomotionIntent(2.0 if goes else 0.0, target, stop=False)
+        action = None if goes else ActionIntent("idle")
+        shown = animator.update(CharacterCommand(number / RATE_HZ, going, action))
+        places.append(shown.table_from_character[[0, 2], 3])
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert steps[-RATE_HZ:].mean() < 0.2 * steps[RATE_HZ : 2 * RATE_HZ].mean()
+
+
 def test_the_same_commands_give_the_same_frames(human: Character, factory) -> None:
     intents = [(2.0, "")] * 30 + [(4.5, "")] * 20
     one, two = (_play(Animator(human, controller=factory), intents) for _ in range(2))

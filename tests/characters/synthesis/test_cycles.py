@@ -10,7 +10,7 @@ from cubeling.characters.model.mirroring import mirror_of
 from cubeling.characters.motion.balance import hips_beyond_feet, trunk_lean
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.synthesis.balance import unsupported_lean, velocity_lean
-from cubeling.characters.synthesis.behaviours import Behaviours, Travel
+from cubeling.characters.synthesis.behaviours import Behaviours, Travel, held_behaviours
 from cubeling.characters.synthesis.capabilities import capabilities, falling
 from cubeling.characters.synthesis.cycles import with_cycles
 from cubeling.characters.synthesis.library import MotionLibrary
@@ -119,6 +119,16 @@ def test_only_frames_that_hold_a_speed_ahead_are_a_behaviour(library: MotionLibr
     assert np.flatnonzero(found.goals(speeds)).max() < 60
 
 
+def test_a_behaviour_is_held_and_goes_on_through_a_short_change(library: MotionLibrary) -> None:
+    walk = _take(library, "Walk", 0, 120)
+    assert Behaviours.of(replace(walk, loops=np.array([False])), np.ones(120, bool)).goals(0).all()
+    members = np.zeros(120, np.intp)
+    members[40:48], members[70:75] = -1, 1  # a short gap, and a short patch of another one
+    held = held_behaviours(replace(walk, loops=np.array([False])), members, np.ones(120, bool))
+    assert set(held[:70]) == {0}
+    assert set(held[70:75]) == {-1}
+
+
 def test_what_a_set_can_do_and_what_is_nearest_to_what_it_lacks(library: MotionLibrary) -> None:
     left = library.only([0, 2])  # Walk, WalkLeftMedium
     found = {each.name: each for each in capabilities(left, np.ones(len(left), bool))}
@@ -145,8 +155,8 @@ def test_a_clip_that_falls_is_named(library: MotionLibrary) -> None:
     feet = [
         joint for joint, part in library.anatomy.parts.items() if "Foot" in part or "Toes" in part
     ]
-    others = [joint for joint in range(moved.shape[1]) if joint not in feet]
-    moved[np.ix_(own, others)] += 0, 0, 0.8
+    others = np.setdiff1d(np.arange(moved.shape[1]), feet)
+    moved[own[:, None], others] += 0, 0, 0.8
     fallen.__dict__["positions"] = moved
     assert hips in others
     assert list(falling(fallen)) == ["Walk"]

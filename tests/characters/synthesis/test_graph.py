@@ -14,6 +14,7 @@ from cubeling.characters.synthesis.graphs.candidates import Candidates, find_can
 from cubeling.characters.synthesis.graphs.components import largest_component, strong_components
 from cubeling.characters.synthesis.graphs.edges import Edges
 from cubeling.characters.synthesis.graphs.graph import EdgeCosts, build_graph
+from cubeling.characters.synthesis.graphs.runs import RunningWays
 from cubeling.characters.synthesis.graphs.search import HopCosts, cost_to_go
 from cubeling.characters.synthesis.graphs.storage import WHOLE_BODY, StoredGraph
 from cubeling.characters.synthesis.library import MotionLibrary
@@ -200,3 +201,24 @@ def test_a_request_that_cannot_be_met_is_refused(stored: StoredGraph) -> None:
     graph = standard_graph(stored)
     with pytest.raises(CharacterError, match="not in the graph"):
         graph.path(int(np.flatnonzero(graph.kept)[0]), np.zeros(len(graph.library), bool))
+
+
+def test_a_way_that_runs_on_after_each_jump_arrives(stored: StoredGraph) -> None:
+    graph = standard_graph(stored, EdgeCosts(per_frame=0.01))
+    library = graph.library
+    goals = np.isin(np.arange(len(library)), library.clip("Run")) & graph.kept
+    ways = RunningWays(graph, 6)
+    for frame in np.flatnonzero(graph.kept & ~goals)[::17].tolist():
+        run, runs = 6, []
+        for _ in range(300):
+            if goals[frame]:
+                break
+            onward = ways.next(frame, run, goals)
+            if onward == library.successors[frame]:
+                run += 1
+            else:
+                runs.append(run)
+                run = 0
+            frame = onward
+        assert goals[frame]
+        assert all(each >= 6 for each in runs)

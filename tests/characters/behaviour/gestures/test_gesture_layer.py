@@ -216,9 +216,13 @@ def _all_of(count, starts, ends):
 
 
 def test_of_many_gestures_at_once_the_last_few_are_planned(human, monkeypatch):
-    planned = []
-    motion = GesturePlanning.motion
-    monkeypatch.setattr(GesturePlanning, "motion", lambda *of: planned.append(of[0]) or motion(*of))
+    planned, motion = [], GesturePlanning.motion
+
+    def counted(*of):
+        planned.append(of[0])
+        return motion(*of)
+
+    monkeypatch.setattr(GesturePlanning, "motion", counted)
     _play(human, _all_of(60, [0.1] * 60, [99.0] * 60), 0.4)
     assert len(planned) == SHOWN_AT_ONCE
 
