@@ -24,6 +24,10 @@ PAGE = Path(app.__file__).parents[1] / "docs" / "your-own-scenario.md"
 COMMAND = "/character/command"
 
 
+LISTING = ("play", "play_options", "replay", "demo")
+"""Commands whose help lists what is installed when they are loaded."""
+
+
 @pytest.fixture
 def install(tmp_path_factory, monkeypatch):
     """Install a package from the texts of its pyproject.toml and of its one module, as pip does."""
@@ -46,8 +50,8 @@ def install(tmp_path_factory, monkeypatch):
         (info / "entry_points.txt").write_text("\n".join(lines))
         monkeypatch.syspath_prepend(site)
         monkeypatch.delitem(sys.modules, module, raising=False)
-        monkeypatch.delitem(sys.modules, "cubeling.app.commands.play.play", raising=False)
-        monkeypatch.delitem(sys.modules, "cubeling.app.commands.play.demo", raising=False)
+        for command in LISTING:
+            monkeypatch.delitem(sys.modules, f"cubeling.app.commands.play.{command}", raising=False)
         importlib.invalidate_caches()
         added_scenarios.cache_clear()
 
@@ -55,8 +59,7 @@ def install(tmp_path_factory, monkeypatch):
     added_scenarios.cache_clear()
     for module in [name for name in sys.modules if name.startswith("cubeling_")]:
         del sys.modules[module]
-    for command in ("play", "play_options", "replay", "demo"):
-        # Their help lists what was installed.
+    for command in LISTING:
         sys.modules.pop(f"cubeling.app.commands.play.{command}", None)
 
 
