@@ -44,7 +44,11 @@ class ClientLimits:
     """What the clients of a port may use."""
 
     clients: int = 16
-    """Clients at one time. As many more may be about to tell the token."""
+    """Clients at one time."""
+
+    strangers: int = 128
+    """Connections that have not told the token yet; beyond, the one that has waited longest goes.
+    They come and go quickly: with few of them, a burst of others ends one that is about to."""
 
     documents: int = 16
     """Documents of a client that wait for their turn; until then no more are read from it."""

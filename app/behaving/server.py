@@ -170,7 +170,7 @@ class BlockServer:
             self._receive(self._connections[accepted])  # most tell the token at once
             # Those without the token cannot take the places of those that have it.
             strangers = [c for c in self._connections.values() if not c.client.admitted]
-            if len(strangers) > self._limits.clients:
+            if len(strangers) > self._limits.strangers:
                 self._drop(strangers[0])
 
     def _receive(self, connection: _Connection) -> None:

@@ -110,6 +110,17 @@ def test_strangers_take_no_place_of_clients_and_there_are_so_many_places():
         assert received(one, b"<x/>") == received(two, b"<x/>") == "<x/>\n"
 
 
+def test_a_burst_of_strangers_ends_no_client_that_is_about_to_tell_the_token(server):
+    with ExitStack() as open_ones, connected(server, "") as slow:
+        for _ in range(60):
+            open_ones.enter_context(connected(server, "tok"))
+        with connected(server) as other:  # all that connected before it are known now
+            other.sendall(b"<bml id='o'/>")
+            assert server.next_document(WAIT_S)
+        slow.sendall(f"token {TOKEN.text}\n<bml id='s'/>".encode())
+        assert server.next_document(WAIT_S) == b"<bml id='s'/>"
+
+
 def test_a_client_that_sends_nothing_is_disconnected_after_a_while():
     now = [0.0]
     with (
