@@ -29,7 +29,10 @@ MAX_FRAME_DOCUMENTS = 16
 """Documents that are read and scheduled for one frame; others wait for the next one."""
 
 MAX_FRAME_BYTES = 1 << 12
-"""Size of documents after which no other one is read for a frame [B]."""
+"""Size of the documents that are read for a frame, unless the first one is longer [B]."""
+
+SMALL_BYTES = 1 << 10
+"""Size of short documents that are read besides a long one [B]: a flood of these holds up none."""
 
 
 class Output(Protocol):
@@ -180,17 +183,18 @@ def play_live(
     frames = 0
     while not output.closed:
         due = begin + frames / rate
-        left = MAX_FRAME_DOCUMENTS, MAX_FRAME_BYTES
-        while min(left) > 0:
-            document = server.next_document(due - clock())
+        left = math.inf
+        for _ in range(MAX_FRAME_DOCUMENTS):
+            document = server.next_document(due - clock(), left)
             if document is None:
                 break
             player.play_block(document)
-            left = left[0] - 1, left[1] - len(document)
+            longest = max(MAX_FRAME_BYTES - len(document), SMALL_BYTES)
+            left = longest if left == math.inf else left - len(document)
         time.sleep(max(due - clock(), 0.0))
         now = clock() - begin
         frames = max(frames, math.floor(now * rate)) + 1
         frame = player.update(now)
-        for each in frame.feedback:
-            server.send(feedback_xml(each))
+        if frame.feedback:
+            server.send("\n".join(map(feedback_xml, frame.feedback)))
         output.show(player, frame)

@@ -1,13 +1,14 @@
 """Taking blocks over TCP and sending feedback, on one thread that no frame waits for."""
 
 import contextlib
+import math
 import queue
 import selectors
 import socket
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from cubeling.app.admission import ClientLimits, Token
@@ -105,12 +106,21 @@ class BlockServer:
         self._thread = threading.Thread(target=self._run, name="blocks", daemon=True)
         self._thread.start()
 
-    def next_document(self, timeout_s: float = 0.0) -> bytes | None:
-        """Return the document whose turn it is; None if none comes within so many seconds."""
+    def next_document(self, timeout_s: float = 0.0, most: float = math.inf) -> bytes | None:
+        """Return the document whose turn it is, of those of at most so many bytes.
+
+        None if none comes within so many seconds. Who has a longer one keeps its turn.
+        """
+
+        def turn() -> deque[bytes] | None:
+            return next((each for each in self._turns if len(each[0]) <= most), None)
+
         with self._changed:
-            if not self._changed.wait_for(lambda: self._turns, max(timeout_s, 0.0)):
+            waiting = self._changed.wait_for(turn, max(timeout_s, 0.0))
+            if waiting is None:
                 return None
-            waiting = self._turns.popleft()
+            # By identity: two clients may wait with the same documents.
+            self._turns = deque(each for each in self._turns if each is not waiting)
             document = waiting.popleft()
             if waiting:
                 self._turns.append(waiting)
@@ -118,7 +128,7 @@ class BlockServer:
         return document
 
     def send(self, document: str) -> None:
-        """Send a document to all clients."""
+        """Send a document, or several in lines, to all clients."""
         self._outgoing.put(document.encode() + b"\n")
         self._wake()
 
@@ -237,12 +247,17 @@ class BlockServer:
                 self._watch(connection)
 
     def _distribute(self) -> None:
+        # All at once: each call to a socket gives the interpreter away for some milliseconds.
+        documents = b"".join(self._unsent())
+        if documents:
+            for connection in list(self._connections.values()):
+                if connection.left is None and connection.client.admitted:
+                    self._offer(connection, documents)
+
+    def _unsent(self) -> Iterator[bytes]:
         with contextlib.suppress(queue.Empty):
             while True:
-                document = self._outgoing.get_nowait()
-                for connection in list(self._connections.values()):
-                    if connection.left is None and connection.client.admitted:
-                        self._offer(connection, document)
+                yield self._outgoing.get_nowait()
 
     def _offer(self, connection: _Connection, document: bytes) -> None:
         connection.unsent += document
