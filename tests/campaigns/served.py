@@ -28,10 +28,6 @@ SEND_S = 0.5
 """Time in which a socket takes or gives something, or an attack goes on [s]."""
 
 
-RETRY_S = 0.2
-"""Time after which a client connects again that was told to [s]."""
-
-
 @dataclass(frozen=True)
 class Seen:
     """What the process has seen since it was asked last."""
@@ -127,41 +123,28 @@ def serve() -> Iterator[Served]:
         process.join()
 
 
-def served_s(server: Served, name: str, patience_s: float) -> float:
+def served_s(served: Served, name: str, patience_s: float) -> float:
     """Return how long it takes until a block of a new client starts [s]; inf if it does not.
 
-    When it is told that there is no room, it replaces what goes on; that there is no place, it
-    connects again.
+    When it is told that there is no room, it replaces what goes on.
     """
     began = time.monotonic()
-    while time.monotonic() < began + patience_s:
-        served, later = _answer(server, name, began + patience_s)
-        if served:
-            return time.monotonic() - began
-        if not later:
-            break
-        time.sleep(RETRY_S)
-    return float("inf")
-
-
-def _answer(server: Served, name: str, until: float) -> tuple[bool, bool]:
-    """Return whether a block of a client that connects now starts, or it is told to come later."""
-    heard = b""
-    with suppress(OSError), closing(server.connect(None, until - time.monotonic())) as client:
+    with suppress(OSError), closing(served.connect(None, patience_s)) as client:
         client.sendall(_block(name))
-        while (left := until - time.monotonic()) > 0.0:
+        heard = b""
+        while (left := began + patience_s - time.monotonic()) > 0.0:
             client.settimeout(left)
             part = client.recv(1 << 16)
             if not part:
                 break
             heard += part
             if f'id="{name}:start"'.encode() in heard:
-                return True, False
+                return time.monotonic() - began
             if f'id="{name}" type="IMPOSSIBLE_TO_SCHEDULE"'.encode() in heard:
                 heard = b""
                 client.sendall(_block(name, 'composition="REPLACE"'))
             heard = heard[-(1 << 16) :]
-    return False, b"connect later" in heard
+    return float("inf")
 
 
 def _block(name: str, more: str = "") -> bytes:
