@@ -50,6 +50,10 @@ class ClientLimits:
     """Connections that have not told the token yet; beyond, the one that has waited longest goes.
     They come and go quickly: with few of them, a burst of others ends one that is about to."""
 
+    quiet_s: float = 1.0
+    """Where no place is left, the client that has sent nothing for longest, and for longer than
+    this, gives its own up to a newcomer [s]."""
+
     documents: int = 16
     """Documents of a client that wait for their turn; until then no more are read from it."""
 

@@ -32,7 +32,9 @@ class ServedClient:
         self._line = b""
         self._splitter = DocumentSplitter()
         self._documents: Iterator[bytes] = iter(())
-        self._came = self._heard = self._began = now
+        self._came = self._began = now
+        self.heard = now
+        """When something came from it last [s]."""
 
     @property
     def full(self) -> bool:
@@ -48,7 +50,7 @@ class ServedClient:
         StreamBroken
             If the token is wrong, or it is no XML.
         """
-        self._heard = now
+        self.heard = now
         if not self.admitted:
             received = self._admit(received)
         if not self._splitter.open:
@@ -78,10 +80,10 @@ class ServedClient:
             late = now > self._came + limits.admission_s
             return f"no token within {limits.admission_s:g} s" if late else ""
         if self.full:
-            self._heard = self._began = now  # it is we who do not read
+            self.heard = self._began = now  # it is we who do not read
         if self._splitter.open and now > self._began + limits.document_s:
             return f"a document that is not complete after {limits.document_s:g} s"
-        idle = now > self._heard + limits.idle_s
+        idle = now > self.heard + limits.idle_s
         return f"nothing has come for {limits.idle_s:g} s" if idle else ""
 
     def _admit(self, received: bytes) -> bytes:

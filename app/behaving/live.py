@@ -31,7 +31,7 @@ MAX_FRAME_DOCUMENTS = 16
 MAX_FRAME_BYTES = 1 << 12
 """Size of the documents that are read for a frame, unless the first one is longer [B]."""
 
-SMALL_BYTES = 1 << 10
+SMALL_BYTES = 1 << 12
 """Size of short documents that are read besides a long one [B]: a flood of these holds up none."""
 
 

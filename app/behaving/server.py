@@ -214,9 +214,14 @@ class BlockServer:
             self._refuse(connection, f"{error}; connect again")
 
     def _welcome(self, newcomer: _Connection) -> None:
-        """Refuse a client for which there is no place."""
+        """Find a place for a client: of one that is quiet, or none."""
         served = [c for c in self._connections.values() if c.client.admitted and c.left is None]
-        if len(served) > self._limits.clients:
+        if len(served) <= self._limits.clients:
+            return
+        quiet = min(served, key=lambda connection: connection.client.heard)
+        if self._clock() - quiet.client.heard > self._limits.quiet_s:
+            self._refuse(quiet, "another client needs the place; connect again")
+        else:
             self._refuse(newcomer, f"there are {self._limits.clients} clients; connect later")
 
     def _refuse(self, connection: _Connection, why: str) -> None:

@@ -28,6 +28,10 @@ SEND_S = 0.5
 """Time in which a socket takes or gives something, or an attack goes on [s]."""
 
 
+RETRY_S = 0.2
+"""Time after which a client connects again that was told to [s]."""
+
+
 @dataclass(frozen=True)
 class Seen:
     """What the process has seen since it was asked last."""
@@ -123,28 +127,41 @@ def serve() -> Iterator[Served]:
         process.join()
 
 
-def served_s(served: Served, name: str, patience_s: float) -> float:
+def served_s(server: Served, name: str, patience_s: float) -> float:
     """Return how long it takes until a block of a new client starts [s]; inf if it does not.
 
-    When it is told that there is no room, it replaces what goes on.
+    When it is told that there is no room, it replaces what goes on; that there is no place, it
+    connects again.
     """
     began = time.monotonic()
-    with suppress(OSError), closing(served.connect(None, patience_s)) as client:
+    while time.monotonic() < began + patience_s:
+        served, later = _answer(server, name, began + patience_s)
+        if served:
+            return time.monotonic() - began
+        if not later:
+            break
+        time.sleep(RETRY_S)
+    return float("inf")
+
+
+def _answer(server: Served, name: str, until: float) -> tuple[bool, bool]:
+    """Return whether a block of a client that connects now starts, or it is told to come later."""
+    heard = b""
+    with suppress(OSError), closing(server.connect(None, until - time.monotonic())) as client:
         client.sendall(_block(name))
-        heard = b""
-        while (left := began + patience_s - time.monotonic()) > 0.0:
+        while (left := until - time.monotonic()) > 0.0:
             client.settimeout(left)
             part = client.recv(1 << 16)
             if not part:
                 break
             heard += part
             if f'id="{name}:start"'.encode() in heard:
-                return time.monotonic() - began
+                return True, False
             if f'id="{name}" type="IMPOSSIBLE_TO_SCHEDULE"'.encode() in heard:
                 heard = b""
                 client.sendall(_block(name, 'composition="REPLACE"'))
             heard = heard[-(1 << 16) :]
-    return float("inf")
+    return False, b"connect later" in heard
 
 
 def _block(name: str, more: str = "") -> bytes:

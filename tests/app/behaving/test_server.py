@@ -110,6 +110,22 @@ def test_strangers_take_no_place_of_clients_and_there_are_so_many_places():
         assert received(one, b"<x/>") == received(two, b"<x/>") == "<x/>\n"
 
 
+def test_who_is_quiet_gives_its_place_up_to_a_newcomer():
+    now, limits = [0.0], ClientLimits(clients=2)
+    opened = BlockServer(0, TOKEN, limits=limits, clock=lambda: now[0])
+    with closing(opened) as server, connected(server) as quiet, connected(server) as busy:
+        for client in (quiet, busy):
+            client.sendall(b"<bml/>")
+            assert server.next_document(WAIT_S)
+        now[0] += 5.0
+        busy.sendall(b"<bml/>")
+        assert server.next_document(WAIT_S)
+        with connected(server) as newcomer:
+            newcomer.sendall(b"<bml id='n'/>")
+            assert server.next_document(WAIT_S) == b"<bml id='n'/>"
+            assert "another client needs the place" in received(quiet, b"never")
+
+
 def test_a_burst_of_strangers_ends_no_client_that_is_about_to_tell_the_token(server):
     with ExitStack() as open_ones, connected(server, "") as slow:
         for _ in range(60):
