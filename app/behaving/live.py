@@ -1,6 +1,7 @@
 """A character that performs blocks while it plays: in a window, or without one."""
 
 import math
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -29,10 +30,12 @@ MAX_FRAME_DOCUMENTS = 16
 """Documents that are read and scheduled for one frame; others wait for the next one."""
 
 MAX_FRAME_BYTES = 1 << 12
-"""Size of the documents that are read for a frame, unless the first one is longer [B]."""
+"""Size of the documents that are read for a frame besides the first one [B]: that may be long, and
+short ones of others do not wait for a flood of such."""
 
-SMALL_BYTES = 1 << 12
-"""Size of short documents that are read besides a long one [B]: a flood of these holds up none."""
+SWITCH_S = 0.0005
+"""Longest time that a frame keeps the interpreter from the thread of the clients [s]. It needs it
+again after each call to a socket: at Python's 5 ms, those that connect wait for seconds."""
 
 
 class Output(Protocol):
@@ -179,6 +182,28 @@ def play_live(
     """
     player.prepare()
     player.settle(SETTLE_S, rate)
+    with _switching_often():
+        _play_frames(player, server, output, rate, clock)
+
+
+@contextmanager
+def _switching_often() -> Iterator[None]:
+    """Let threads take turns every `SWITCH_S`."""
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(SWITCH_S)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(usual)
+
+
+def _play_frames(
+    player: BehaviourPlayer,
+    server: BlockServer,
+    output: Output,
+    rate: float,
+    clock: Callable[[], float],
+) -> None:
     begin = clock()
     frames = 0
     while not output.closed:
@@ -189,8 +214,7 @@ def play_live(
             if document is None:
                 break
             player.play_block(document)
-            longest = max(MAX_FRAME_BYTES - len(document), SMALL_BYTES)
-            left = longest if left == math.inf else left - len(document)
+            left = MAX_FRAME_BYTES if left == math.inf else left - len(document)
         time.sleep(max(due - clock(), 0.0))
         now = clock() - begin
         frames = max(frames, math.floor(now * rate)) + 1
