@@ -27,7 +27,7 @@ SOFT_RAD = math.radians(8.0)
 MOST_LIFT_RAD = math.radians(75.0)
 """How far a heel lifts."""
 
-STEPS = 3
+LIFT_STEPS = 3
 """Steps to the lift: each leaves about a fifth of the error, as the raised ankle leans the shin."""
 
 
@@ -69,7 +69,7 @@ def bend_to_foot(
     hip, knee, _ = leg
     upper, lower = two_bones.reach(*leg, flat)
     foot, lift, raised = IDENTITY, 0.0, flat
-    for _ in range(STEPS):
+    for _ in range(LIFT_STEPS):
         bent = add(hip, rotate(upper, subtract(knee, hip)))
         over = rest_angle - angle_at(raised, bent, ball) + lift - MOST_FLEXION_RAD
         if over <= -SOFT_RAD:

@@ -22,7 +22,7 @@ SPEED_ERROR_M_S = 0.5
 STANDING_M_S = 0.2
 """A slower body stands [m/s]."""
 
-HYSTERESIS = 0.3
+LEAVING_ERRORS = 0.3
 """A behaviour is left for one that is nearer by so many of these errors."""
 
 TOO_FAST_FACTOR = 2.0
@@ -153,7 +153,7 @@ class Behaviours:
             away[:, 1] = 0.0  # to stand is more than to keep the heading
         errors = np.sqrt(np.square(away).sum(1))
         if present >= 0:
-            errors[present] -= HYSTERESIS
+            errors[present] -= LEAVING_ERRORS
         return int(errors.argmin())
 
     def goals(self, behaviour: int) -> NDArray[np.bool_]:

@@ -53,6 +53,7 @@ class _Xcb:
         self._xcb.xcb_connect.restype = c_void_p
         self.connection: int | None = self._xcb.xcb_connect(None, None)
         self._check = self.function(self._xcb, "xcb_request_check", c_void_p, _Cookie)
+        self.flush = self.function(self._xcb, "xcb_flush", c_int)
         if self.function(self._xcb, "xcb_connection_has_error", c_int)():
             self.close()
             raise OSError("there is no X server")
@@ -163,14 +164,11 @@ class SharedPicture:
         kind = self._depth, Z_PIXMAP, 0
         self._put(self._window, self._context, *whole, *origin, *kind, self._segment, 0)
         self._read = self._ask()  # answered when the pixels are read
-        self._flush()
+        self._xcb.flush()
 
     def close(self) -> None:
         """Disconnect; the server then forgets the memory."""
         self._xcb.close()
-
-    def _flush(self) -> None:
-        self._xcb.function(self._xcb._xcb, "xcb_flush", c_int)()
 
     def _wait(self) -> None:
         """Wait until the server has read what is shown."""

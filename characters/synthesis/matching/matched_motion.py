@@ -18,7 +18,7 @@ TRANSITION_S, MAX_TRANSITION_S = 0.3, 0.6
 """Length of a transition by inertialization [s]; it is longer where hands or feet would be pulled
 harder than the clips ever do."""
 
-PULL = 0.5
+MAX_PULL_SHARE = 0.5
 """How hard the difference of two motions may pull hands and feet, as a share of the largest
 acceleration in the clips: the motions have their own besides."""
 
@@ -93,7 +93,7 @@ class _BodyPartPlayback:
         apart = at[:2] - at[2:]
         away = float(np.linalg.norm(apart[0], axis=-1).max())
         speed = float(np.linalg.norm(apart[1] - apart[0], axis=-1).max()) / step
-        most = PULL * self._database.acceleration
+        most = MAX_PULL_SHARE * self._database.acceleration
         needed = max(math.sqrt(_OFFSET_PEAK * away / most), _VELOCITY_PEAK * speed / most)
         return min(max(needed, TRANSITION_S), MAX_TRANSITION_S)
 

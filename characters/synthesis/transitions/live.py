@@ -47,7 +47,7 @@ class GraphPlayback(Protocol):
         ...
 
     def start(self, frame: int) -> None:
-        """Begin anew at a frame, whatever was played."""
+        """Start again at a frame, whatever was played."""
         ...
 
 
@@ -60,7 +60,7 @@ class StandardSource:
         self.start(start)
 
     def start(self, frame: int) -> None:
-        """Begin anew at a frame, whatever was played."""
+        """Start again at a frame, whatever was played."""
         self._player = GraphPlayer(self.library, frame)
         self._run = 0  # frames since the last jump
         self.frame = frame
@@ -92,7 +92,7 @@ class PartsSource:
         self.start(start)
 
     def start(self, frame: int) -> None:
-        """Begin anew at a frame, whatever was played."""
+        """Start again at a frame, whatever was played."""
         self._planning: _Planning | None = None
         self._planned: StitchedMotion | None = None
         self._time = 0  # in the planned transition
@@ -227,7 +227,7 @@ class LiveMotion:
     def restart(self, frame: int | None = None) -> None:
         """Let time 0 be the newest frame: the motion is entered again, and goes on from there.
 
-        With the number of a frame of the library, it begins anew at that one.
+        With the number of a frame of the library, it starts again at that one.
         """
         self._since, self._start = 0.0, float(self._newest)
         if frame is not None:
