@@ -113,6 +113,20 @@ def check_regular(path: str | Path, name: str, error: type[Exception]) -> None:
         raise _unreadable(path, name, reason, error)
 
 
+def is_there(path: str | Path) -> bool:
+    """Return whether a path leads to something; False where it is no possible path.
+
+    `Path.exists` raises an error for a name that is too long, or in a folder that may not be read.
+
+    >>> is_there("x" * 5000)
+    False
+    """
+    try:
+        return Path(path).exists()
+    except OSError:
+        return False
+
+
 def first_bytes(path: str | Path, count: int) -> bytes:
     """Return how a regular file begins, by which its format is known; b"" if it cannot be read."""
     try:

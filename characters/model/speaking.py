@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.files import is_there
 
 if TYPE_CHECKING:
     from cubeling.characters.synthesis.gestures.library import GestureLibrary
@@ -19,7 +20,7 @@ def gestures_beside(path: Path, skeleton: Skeleton) -> "GestureLibrary | None":
         If it cannot be read, or was made for another skeleton.
     """
     file = path.with_suffix(".gestures")
-    return gestures_for(file, skeleton, path.name) if file.exists() else None
+    return gestures_for(file, skeleton, path.name) if is_there(file) else None
 
 
 def gestures_for(file: Path, skeleton: Skeleton, name: str) -> "GestureLibrary":

@@ -11,6 +11,7 @@ from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.motion import StandingMotion
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Skeleton
+from cubeling.files import is_there
 
 # Few characters stand as recorded: what that takes is loaded for those.
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def recordings_beside(path: Path, skeleton: Skeleton) -> "tuple[StandingRecordin
         If it cannot be read, or was made for another skeleton.
     """
     idle = path.with_suffix(".idle")
-    if not idle.exists():
+    if not is_there(idle):
         return ()
     from cubeling.characters.synthesis.archive import skeleton_identity
     from cubeling.characters.synthesis.idle.storage import load_person

@@ -9,6 +9,7 @@ from typing import Any, Self
 import cv2
 import numpy as np
 
+from cubeling.files import is_there
 from cubeling.toml_file import TomlTable, read, toml_kind
 from cubeling.tracking.cube.icons import ICON_COLOURS
 from cubeling.tracking.cube.sides import (
@@ -130,7 +131,7 @@ class CubeModel:
         path = Path(name_or_path)
         if path.suffix != ".toml":
             path = CUBES_FOLDER / f"{name_or_path}.toml"
-            if not path.is_file():
+            if not is_there(path):
                 known = ", ".join(bundled_cubes())
                 raise TrackingError(
                     f"no cube is called '{name_or_path}': choose {known}, or give a .toml file"

@@ -16,7 +16,7 @@ from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character, check_input
 from cubeling.app.ui.output_formats import VIDEO_FORMATS, check_video_codec
-from cubeling.files import FileKind
+from cubeling.files import FileKind, is_there
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -136,7 +136,7 @@ def _beside(file: Path, name: str) -> str:
     """Return the motion of a name in a schedule: a file beside it, else the name as it is."""
     path, mark, clip = name.partition("#")
     beside = file.parent / path
-    return f"{beside}{mark}{clip}" if beside.exists() else name
+    return f"{beside}{mark}{clip}" if is_there(beside) else name
 
 
 def _motion(name: str, body: Character, load: Callable[[str], Character]) -> Motion:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.commands.make.schedule import read_schedule
+from cubeling.bad_input import BadInputError
 from cubeling.characters import Character, load_motion
 
 EXAMPLES = Path(__file__).parents[3] / "docs" / "schedules"
@@ -92,6 +93,13 @@ def test_refuses_in_one_line(cubeling, tmp_path, text, message) -> None:
     assert message in error
     assert error.count("\n") == 1
     assert not (tmp_path / "schedule.bvh").exists()
+
+
+def test_a_name_that_no_file_can_have_is_refused_as_any_other(tmp_path) -> None:
+    text = (EXAMPLES / "copy.xml").read_text().replace("human#idle", "x" * 300)
+    (tmp_path / "bad.xml").write_text(text)
+    with pytest.raises(BadInputError, match="xxx"):
+        read_schedule(tmp_path / "bad.xml")
 
 
 def test_a_file_that_many_actions_name_is_read_once(tmp_path, monkeypatch) -> None:
