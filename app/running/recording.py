@@ -120,6 +120,10 @@ class SessionRecording(Closeable):
         self.event(f"mark {self._marks}", timestamp)
         return self._marks
 
+    def flush(self) -> None:
+        """Wait until everything is written."""
+        self._recorder.flush()
+
     def close(self) -> None:
         """Complete the file; without a frame, leave none. A second call does nothing."""
         self._wire.record_to(None)

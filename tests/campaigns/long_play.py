@@ -118,6 +118,8 @@ def play_virtually(hours: float, folder: Path) -> LongPlay:
             and (step.command.speech.start == step.frame.timestamp)
         )
         if played.frames % every == 0:
+            if session.recording is not None:
+                session.recording.flush()  # what waits for a slow disk has not grown
             gc.collect()
             played.memory.append(resident())
             # Those from before the first frame are frozen, and not among them.
