@@ -98,6 +98,13 @@ class Animator:
         """Length of the character on the table, from front to back [m]."""
         return self.character.length * self.scale
 
+    def box(self) -> tuple[Array, Array] | None:
+        """Return pose, (4, 4), and size, (3,), of a box around the body as it was drawn last [m].
+
+        None if nothing has been drawn.
+        """
+        return self._keep_clear.box()
+
     def update(self, command: CharacterCommand) -> PosedCharacter:
         """Advance to the command's time and return the character as it is to be drawn.
 

@@ -160,6 +160,28 @@ class KeepClear:
         """Take what is drawn: the next frame keeps that out of the obstacles."""
         self._drawn, self._points = (pose, table_from_character), None
 
+    def box(self) -> tuple[Array, Array] | None:
+        """Return a box around the body as it was drawn last; None if nothing has been drawn.
+
+        That is its pose, (4, 4) with the origin in its centre, and the lengths of its edges, (3,)
+        [m on the table]; it stands upright and is turned as the character is. A body that leaps
+        takes all the place from where it is to where it will land.
+        """
+        points = self._outline_points()
+        if points is None or not len(points):
+            return None
+        assert self._drawn is not None
+        pose = self._drawn[1].copy()
+        pose[:3, :3] /= float(pose[1, 1])
+        within = points @ pose[:3, :3]
+        low, high = within.min(axis=0), within.max(axis=0)
+        if self._leap is not None:
+            left = self._leap.start + self._leap.way - self._offset
+            along = np.insert(left, 1, 0.0) @ pose[:3, :3]
+            low, high = low + np.minimum(along, 0.0), high + np.maximum(along, 0.0)
+        pose[:3, 3] = pose[:3, :3] @ (low + high) / 2
+        return pose, np.asarray(high - low)
+
     @property
     def _here(self) -> Array:
         assert self._drawn is not None
@@ -178,14 +200,23 @@ class KeepClear:
         """
         if self._drawn is None or not any(self._is_near(each) for each in command.obstacles):
             return None
+        points = self._outline_points()
+        assert points is not None
+        assert self._outline is not None
+        reaches = command.behaviour is not None and bool(command.behaviour.reaches)
+        without_arms = reaches or _is_exact(command)
+        return points[~self._outline.is_arm] if without_arms else points
+
+    def _outline_points(self) -> Array | None:
+        """Return the whole outline as it was drawn last, (n, 3) [m]; None before that."""
+        if self._drawn is None:
+            return None
         if self._outline is None:
             self._outline = Outline(self._character)
         if self._points is None:
             pose, placed = self._drawn
             self._points = self._outline.points(placed @ pose.globals(self._character.skeleton))
-        reaches = command.behaviour is not None and bool(command.behaviour.reaches)
-        without_arms = reaches or _is_exact(command)
-        return self._points[~self._outline.is_arm] if without_arms else self._points
+        return self._points
 
     def _is_near(self, obstacle: Obstacle) -> bool:
         return obstacle.distance(self._here) < NEAR_M

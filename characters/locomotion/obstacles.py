@@ -38,6 +38,9 @@ class Obstacle:
     velocity: Array
     """Velocity of its centre, (3,) in the table frame [m/s]."""
 
+    alive: bool = False
+    """Whether it is another character, through which no way out leads."""
+
     @property
     def corners(self) -> Array:
         """Its corners, (8, 3) in the table frame [m]."""

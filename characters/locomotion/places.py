@@ -11,6 +11,9 @@ from cubeling.characters.locomotion.obstacles import DIRECTIONS, STANDING, Obsta
 
 Array = NDArray[np.float64]
 
+CROWDED_M = 1.0
+"""What a way aside may be longer not to lead through another character [m]."""
+
 BLOCKED_M, TURNED_M, BEHIND_M, BESIDE_M = 0.15, 0.02, 0.01, 0.06
 """What a way aside may be longer, not to end in another obstacle, not to turn back from the last
 way, to lead to the viewer's side, and not to leave the picture [m]."""
@@ -40,6 +43,9 @@ DETOUR_M = 0.15
 BODY_M, WIDE_M = 0.033, 0.1
 """Half the width of a body [m]; an obstacle whose corners are further from its middle than the
 second is not walked round [m]."""
+
+WAY_SHARES = np.array([0.25, 0.5, 0.75, 1.0])
+"""Where on a way it is looked for other characters, as shares of its length."""
 
 _RINGS = np.concatenate([np.zeros((1, 2)), *(each * DIRECTIONS[:, ::2].T for each in RINGS_M)])
 _ALONG = DIRECTIONS.T @ DIRECTIONS
@@ -99,6 +105,9 @@ def way_out(
     left = needed[:, -1][:, None, :] - distances[:, None] * _ALONG
     blocked = (left.min(axis=2) > 1e-9).any(axis=0)
     costs = distances + BLOCKED_M * blocked
+    alive = [number for number, each in enumerate(obstacles) if each.alive]
+    if alive:
+        costs = costs + CROWDED_M * _through(needed[alive][:, [0, -1]], distances)
     if last is not None:
         costs = costs + TURNED_M * (1.0 - last @ DIRECTIONS)
     if view is not None:
@@ -109,6 +118,15 @@ def way_out(
     best = int(np.argmin(costs))
     first = int(np.argmax(touched.any(axis=0)))
     return WayOut(DIRECTIONS[:, best], float(distances[best]), float(times[first]))
+
+
+def _through(needed: Array, distances: Array) -> NDArray[np.bool_]:
+    """Return which ways lead through one of some bodies, (24,), now or at another time.
+
+    `needed` are (bodies, times, 24) and `distances` of the ways (24,) [m].
+    """
+    left = needed[:, :, None, None, :] - WAY_SHARES[:, None, None] * distances[:, None] * _ALONG
+    return np.asarray((left.min(axis=-1) > 1e-9).any(axis=(0, 1, 2)))
 
 
 def hidden_share(points: Array, obstacles: Sequence[Obstacle], view: TableView) -> float:
