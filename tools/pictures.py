@@ -5,6 +5,7 @@ Every picture is a moment of a bundled recording, as the program shows it, or a 
 
 import shutil
 import tempfile
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -58,6 +59,9 @@ MOMENTS_S: dict[str, dict[str, float]] = {
 }
 """For every recording, the pictures taken from it and their times [s]."""
 
+CAST, CAST_MOMENTS_S = ("human", "vleo", "human", "vleo"), {"cast": 9.0}
+"""Who stands beside Vleo in a picture of `companion`, and when it is taken [s]."""
+
 TILES = Path(__file__).parent.parent / "app" / "ui" / "playback" / "scenario_pictures"
 """Where the window finds the pictures of the scenarios."""
 
@@ -68,15 +72,16 @@ TILE_SIZE, TILE_SETTLING_S = (480, 270), 0.5
 """Width and height of them [px], and for how long light is measured before [s]."""
 
 
-def draw(scenario: str, moments: dict[str, float]) -> None:
-    """Play one recording, and save some of its pictures."""
+def draw(scenario: str, moments: dict[str, float], others: Sequence[str] = ()) -> None:
+    """Play one recording, with others on the table, and save some of its pictures."""
     waiting = sorted((time, name) for name, time in moments.items())
     with ExitStack() as closing:
         source = closing.enter_context(open_source(str(bundled_session(scenario))))
         context = create_context()
         closing.callback(context.release)
         intrinsics = intrinsics_for(source.intrinsics, source.size)
-        playground = Playground(scenario, intrinsics, context=context)
+        cast = [Character.load(name) for name in others]
+        playground = Playground(scenario, intrinsics, others=cast, context=context)
         closing.callback(playground.close)
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         closing.callback(virtual_robot.close)
@@ -304,6 +309,7 @@ if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
     for recording, pictures in MOMENTS_S.items():
         draw(recording, pictures)
+    draw("companion", CAST_MOMENTS_S, CAST)
     draw_sheet("companion")
     draw_panels()
     draw_calibration()

@@ -8,7 +8,7 @@ from mcap.writer import Writer
 
 from cubeling.app.session.encoding import IMAGE_TOPIC, INPUTS_TOPIC, LINE_TOPIC, encode
 from cubeling.app.session.inputs import RecordedInputs
-from cubeling.app.session.recorder import CHUNK_BYTES, JSON_SCHEMAS
+from cubeling.app.session.recorder import CHUNK_BYTES, json_schema
 from cubeling.app.session.session_file import SessionFile
 
 INPUT_TOPICS = (IMAGE_TOPIC, "/camera/calibration", INPUTS_TOPIC, LINE_TOPIC, "/events")
@@ -68,7 +68,7 @@ def copy_session(
             writer.add_message(ids[channel.topic], message.log_time, data, message.publish_time)
             if channel.topic == IMAGE_TOPIC and time in added:
                 if INPUTS_TOPIC not in ids:
-                    name, text = JSON_SCHEMAS[INPUTS_TOPIC]
+                    name, text = json_schema(INPUTS_TOPIC)
                     ids[INPUTS_TOPIC] = writer.register_channel(
                         INPUTS_TOPIC, "json", writer.register_schema(name, "jsonschema", text)
                     )

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from cubeling.affect import Emotion
 from cubeling.app.behaving.voice import LineSource
 from cubeling.app.behaving.walking_times import SPEEDS, WalkingTimes
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.characters import (
     Animator,
     Character,

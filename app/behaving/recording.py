@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.behaving.camera import FollowingCamera
 from cubeling.app.behaving.player import BehaviourFrame, BehaviourPlayer
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.sound import SAMPLE_RATE
 from cubeling.app.sound.mixer import FADE_OUT, limit
 from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate

@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable
 from typing import Protocol
 
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.characters import CharacterError
 from cubeling.characters.speech import DEFAULT_PROFILE, Speech, TaggedText, Voice, say, utterance_of
 

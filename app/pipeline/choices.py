@@ -33,6 +33,35 @@ SPEED_MAP_NAMES = ("corrected", "legacy")
 """Names of AvatAR's Speed maps: corrected, and as printed in the thesis."""
 
 
+MAX_CAST = 5
+"""Most characters on the table."""
+
+
+def cast_of(text: str | None, character: str | None) -> tuple[str | None, tuple[str, ...]]:
+    """Return the character that the cube leads, and the others, of a list with commas.
+
+    Without a list that is `character`, alone; None is the scenario's own.
+
+    >>> cast_of("human, vleo,vleo", None)
+    ('human', ('vleo', 'vleo'))
+
+    Raises
+    ------
+    AppError
+        Both are given, a name is missing, or there are too many.
+    """
+    if text is None:
+        return character, ()
+    if character is not None:
+        raise AppError("--cast names all characters, the first too: leave out --character")
+    names = tuple(part.strip() for part in text.split(","))
+    if not all(names) or len(names) > MAX_CAST:
+        raise AppError(
+            f"--cast takes one to {MAX_CAST} characters, separated by commas, not '{text:.60}'"
+        )
+    return names[0], names[1:]
+
+
 def check_look(name: str) -> None:
     """Raise AppError for a name that is none of `LOOK_CHOICES`."""
     if name not in LOOK_CHOICES:

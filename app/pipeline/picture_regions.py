@@ -1,5 +1,7 @@
 """What a picture is about, and where it is seen: the cube with the hand, and the character."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,23 +23,23 @@ def picture_regions(
     state: CubeState,
     controls: CubeControls,
     cube: CubeModel,
-    character: Character,
-    posed: PosedCharacter,
+    cast: Sequence[tuple[Character, PosedCharacter]],
     interior: Interior | None,
     matrix: Array,
 ) -> tuple[Rect, ...]:
-    """Return where the cube and the character on the table are seen [px], as far as they are.
+    """Return where the cube and the characters on the table are seen [px], as far as they are.
 
-    `matrix` is the camera's, (3, 3) [px], and `interior` what is seen in the cube, None for a
-    closed one.
+    `cast` is first who may be in the cube, then all others; `matrix` is the camera's, (3, 3) [px],
+    and `interior` what is seen in the cube, None for a closed one.
     """
     table = controls.camera_from_table
     regions: list[Rect | None] = []
     if state.camera_from_cube is not None:
         regions.append(_cube_region(state.camera_from_cube, cube.edge, matrix))
-    on_table = interior is None or interior.left_on_table > 0.0
-    if posed.visible and table is not None and on_table:
-        regions.append(_character_region(table, character, posed, matrix))
+    on_table = cast if interior is None or interior.left_on_table > 0.0 else cast[1:]
+    for character, posed in on_table if table is not None else ():
+        if posed.visible:
+            regions.append(_character_region(table, character, posed, matrix))
     return tuple(region for region in regions if region is not None)
 
 

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.attention import Attention
+from cubeling.app.pipeline.cast.cast import Cast
+from cubeling.app.pipeline.cast.member import CastMember
+from cubeling.app.pipeline.cast.waiting_members import cast_names, waiting_members
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
-from cubeling.app.pipeline.obstacles import Obstacles, view_of
 from cubeling.app.pipeline.picture_regions import picture_regions
-from cubeling.app.pipeline.props import BodyParts, PosedBody
 from cubeling.app.pipeline.registry import make_scenario
 from cubeling.app.pipeline.scenario import (
     AdjustableScenario,
@@ -24,26 +24,23 @@ from cubeling.app.pipeline.scenario import (
     Outcome,
     Scenario,
     ScenarioSettings,
-    check_actions,
 )
-from cubeling.app.pipeline.scenario_errors import check_outcome, scenario_errors
+from cubeling.app.pipeline.scenario_errors import scenario_errors
 from cubeling.app.pipeline.sight import Sight
-from cubeling.app.pipeline.situation import Situation, table_from_cube
-from cubeling.app.pipeline.spoken_line import Speaking
 from cubeling.app.pipeline.step import ReplayInputs, Step
-from cubeling.app.pipeline.step_renderer import StepRenderer
+from cubeling.app.pipeline.step_renderer import DrawnBody, StepRenderer
+from cubeling.app.pipeline.table.attention import Attention
+from cubeling.app.pipeline.table.obstacles import Obstacles, view_of
+from cubeling.app.pipeline.table.situation import table_from_cube
 from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.characters import (
     Animator,
     Character,
-    CharacterCommand,
     ControllerFactory,
-    PosedCharacter,
     RootDelta,
     first_suitable,
 )
 from cubeling.characters.rendering import Quality
-from cubeling.characters.speech import Complexion
 from cubeling.tracking import CubeControls, CubeGestures, CubeModel, CubeState, Frame, Intrinsics
 from cubeling.tracking.appearance import APPEARANCE_PARTS
 
@@ -53,19 +50,7 @@ if TYPE_CHECKING:
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
 
-STATE_NAMES = (
-    "scenario",
-    "tracked",
-    "_gestures",
-    "_animator",
-    "_posed",
-    "_body",
-    "_attention",
-    "_obstacles",
-    "_speaking",
-    "_complexion",
-    "_window",
-)
+STATE_NAMES = ("cast", "tracked", "_gestures", "_obstacles", "_window")
 """The attributes of a playground that change from frame to frame."""
 
 
@@ -84,7 +69,9 @@ class Playground:
     cube
         The cube in the player's hand; None for the scenario's own.
     character
-        The character; None for the scenario's own.
+        The character that the cube leads; None for the scenario's own.
+    others
+        The rest of the cast, at most four characters.
     context
         Where to draw, from `create_context`; the caller releases it. None for no pictures.
     look
@@ -120,6 +107,7 @@ class Playground:
         *,
         cube: CubeModel | None = None,
         character: Character | None = None,
+        others: Sequence[Character] = (),
         context: "moderngl.Context | None" = None,
         look: str = "auto",
         fixed: bool = False,
@@ -134,7 +122,7 @@ class Playground:
             scenario = make_scenario(scenario, cube)
         self.known_cubes = tuple(known_cubes)
         self._look, self._lap = look, lap
-        self._controller, self._inside = controller, inside
+        self._controller, self._inside, self._others = controller, inside, tuple(others)
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         parts = tuple(each for each in APPEARANCE_PARTS if each in realism)
@@ -156,23 +144,31 @@ class Playground:
         """
         cube = cube or CubeModel.load(scenario.cube)
         character = character or Character.load(scenario.character)
-        animator = Animator(character, place=scenario.start, controller=self._controller)
-        check_actions(scenario, character.name, animator.actions)
-        self.scenario, self.cube, self.character = scenario, cube, character
+        name, *names = cast_names([character, *self._others])
+        edge, look = cube.edge, self._look
+        attention = Attention(look, edge)
+        lead = CastMember(name, character, scenario, attention, controller=self._controller)
+        self.cast = Cast([lead, *waiting_members(names, self._others, look, edge)])
+        """Who is on the table: first the character that the cube leads."""
+        self.cube = cube
         self.tracked = TrackedCube(cube, self.intrinsics, self.known_cubes)
         """The cube in view, and what it has told of the camera."""
         self._gestures = CubeGestures(cube)
         self.sight.begin(cube)
-        self._animator, self._parts = animator, BodyParts.of(character, animator.scale)
-        self._posed: PosedCharacter | None = None
-        self._body: PosedBody | None = None
-        self._attention = Attention(self._look, cube.edge)
         self._obstacles = Obstacles(cube.edge)
         self._window = CubeWindow(cube, character, scenario.roles, self._inside)
-        self._speaking = Speaking()
-        self._complexion = Complexion()
 
-    def cast(self, character: Character) -> None:
+    @property
+    def scenario(self) -> Scenario:
+        """What the cube plays."""
+        return self.cast.lead.scenario
+
+    @property
+    def character(self) -> Character:
+        """The character that the cube leads."""
+        return self.cast.lead.character
+
+    def exchange_character(self, character: Character) -> None:
         """Let another character go on where the present one stands.
 
         Raises
@@ -182,19 +178,17 @@ class Playground:
         CharacterError
             It cannot be animated.
         """
-        place = self.scenario.start
-        if self._posed is not None:
-            table = self._posed.table_from_character
+        lead, place = self.cast.lead, self.scenario.start
+        if lead.posed is not None:
+            table = lead.posed.table_from_character
             yaw = math.atan2(float(table[0, 2]), float(table[2, 2]))
             place = RootDelta(float(table[0, 3]), float(table[2, 3]), yaw)
         animator = Animator(character, place=place)
-        asked = [role for role in self.scenario.roles if role in self._animator.actions]
+        asked = [role for role in self.scenario.roles if role in lead.actions]
         missing = [role for role in asked if role not in animator.actions]
         if missing:
             raise AppError(f"{character.name} cannot {' or '.join(missing)}")
-        check_actions(self.scenario, character.name, animator.actions)
-        self.character, self._animator = character, animator
-        self._parts, self._body = BodyParts.of(character, animator.scale), None
+        lead.exchange(character, animator)
         self._window.cast(character)
 
     def look_through(self, intrinsics: Intrinsics) -> None:
@@ -248,7 +242,8 @@ class Playground:
             with scenario_errors(type(self.scenario)):
                 self.scenario.adjust(settings)
         self._look = look
-        self._attention.look = look
+        for member in self.cast.members:
+            member.attention.look = look
 
     def step(
         self,
@@ -292,19 +287,17 @@ class Playground:
             appearance = self.sight.see(frame, state, controls)
         self._lap("appearance")
         inputs = inputs or Inputs()
-        decision = self.decide(state, controls, inputs)
-        command = self.command(state, controls, decision, inputs)
-        if replay.command is not None:
-            command = replay.command
+        cast = self.cast
+        decisions = cast.decide(controls, table_from_cube(state, controls), inputs)
+        things, view = self._obstacles.update(state, controls), view_of(controls, self.sight.lens)
         self.tracked.advise(frame, state)
         self._lap("scenario")
-        posed = replay.pose_for(self.character) or self.animate(command)
-        self._posed, self._body = posed, PosedBody(self.character, self._parts, posed)
-        self._complexion.update(command.timestamp, command.emotion)
+        commands = cast.perform(state, controls, decisions, inputs, things, view, replay)
+        command, decision, posed = commands[0], decisions[0], cast.lead.posed
+        assert posed is not None, "it has just performed"
         interior = self._window.update(state, controls, command, inputs.inside)
         outcome = replace(decision, command=command, hint=self._hint(decision))
         self._lap("animation")
-        matrix = self.sight.lens.matrix
         step = Step(
             frame,
             state,
@@ -313,11 +306,17 @@ class Playground:
             posed,
             picture=None,
             subjects=picture_regions(
-                state, controls, self.cube, self.character, posed, interior, matrix
+                state,
+                controls,
+                self.cube,
+                [(each.character, each.posed) for each in cast.members if each.posed],
+                interior,
+                self.sight.lens.matrix,
             ),
             scenario=self.scenario.name,
             has_intensity=self.scenario.has_intensity,
-            line=self._speaking.line if command.speech is not None else None,
+            line=cast.lead.speaking.line if command.speech is not None else None,
+            others=cast.performances(commands, decisions),
             interior=interior,
             appearance=appearance,
             tracker_error="" if replay.state else self.tracked.error,
@@ -335,51 +334,14 @@ class Playground:
         """Compute what the hand does with the cube."""
         return self._gestures.update(state)
 
-    def decide(self, state: CubeState, controls: CubeControls, inputs: Inputs) -> Outcome:
-        """Let the scenario decide."""
-        animator = self._animator
-        situation = Situation(
-            self._posed,
-            self._body,
-            animator.actions,
-            animator.walks,
-            animator.length,
-            table_from_cube(state, controls),
-        )
-        scenario = type(self.scenario)
-        with scenario_errors(scenario):
-            return check_outcome(self.scenario.update(controls, situation, inputs), scenario)
-
-    def command(
-        self, state: CubeState, controls: CubeControls, decision: Outcome, inputs: Inputs
-    ) -> CharacterCommand:
-        """Return the command of a decision with gaze, emotion, speech, and what is in the way.
-
-        Only this method adds the emotion: character, virtual robot and robot show one.
-        """
-        command = decision.command
-        return replace(
-            command,
-            obstacles=self._obstacles.update(state, controls),
-            view=view_of(controls, self.sight.lens),
-            gaze=self._attention.update(state, controls, command),
-            emotion=decision.emotion.emotion,
-            speech=self._speaking.update(inputs.line, command, silence=inputs.clear),
-        )
-
     def _hint(self, decision: Outcome) -> str:
         """Return what the player can do now; what the cube in view is comes first."""
         told = self.tracked.hint(self.scenario.name, self.fixed)
         return told or (LOOK_INSIDE if self._window.invites else decision.hint)
 
-    def animate(self, command: CharacterCommand) -> PosedCharacter:
-        """Advance the character to the time of a command."""
-        return self._animator.update(command)
-
     def draw(self, step: Step) -> NDArray[np.uint8] | None:
         """Draw the picture of a step; return None without a graphics context."""
-        body = PosedBody(self.character, self._parts, step.posed)
-        return self._renderer.draw(step, body, self._complexion.blood)
+        return self._renderer.draw(step, self._drawn_bodies(step))
 
     def with_picture(self, step: Step) -> Step:
         """Return a step with its picture, which `step` left out."""
@@ -387,9 +349,16 @@ class Playground:
         return self._drawn(replace(step, appearance=appearance))
 
     def _drawn(self, step: Step) -> Step:
-        body = PosedBody(self.character, self._parts, step.posed)
-        close_up = self._renderer.close_up(step, body, self._complexion.blood)
+        close_up = self._renderer.close_up(step, self._drawn_bodies(step)[0])
         return replace(step, picture=self.draw(step), close_up=close_up)
+
+    def _drawn_bodies(self, step: Step) -> list[DrawnBody]:
+        """Return the bodies of the cast as a step shows them."""
+        poses = [step.posed, *(each.posed for each in step.others)]
+        return [
+            DrawnBody(member.body_of(posed), member.complexion.blood)
+            for member, posed in zip(self.cast.members, poses, strict=True)
+        ]
 
     def close(self) -> None:
         """Release the graphics; a second call does nothing."""

@@ -35,6 +35,9 @@ SCENARIOS: Registry[type[Scenario]] = Registry(
 )
 """The bundled scenarios by name."""
 
+WAITING = Registry[Callable[..., "Scenario"]]({"waiting": "cubeling.app.scenarios.waiting:Waiting"})
+"""What decides for the characters of a cast that no cube leads."""
+
 SUMMARIES = {place.partition(":")[0]: summary for place, summary in BUNDLED.items()}
 """What the bundled scenarios are; each class takes its own from here."""
 

@@ -7,9 +7,9 @@ from typing import Protocol, runtime_checkable
 from cubeling.affect import Emotion, Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import check_speed_map, check_turns
-from cubeling.app.pipeline.props import Thing
-from cubeling.app.pipeline.situation import Situation
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.props import Thing
+from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.characters import CharacterCommand, RootDelta
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel

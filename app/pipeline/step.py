@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.characters import Character, CharacterCommand, PosedCharacter
 from cubeling.robot import Catalogue, Telemetry
 from cubeling.tracking import CubeControls, CubeState, Frame
@@ -16,6 +16,30 @@ from cubeling.tracking.appearance import Appearance
 
 Rect = tuple[float, float, float, float]
 """Left, top, right and bottom of a rectangle in the picture."""
+
+
+@dataclass(frozen=True)
+class Performance:
+    """What a character of the cast does in a frame, besides the first."""
+
+    name: str
+    """Its name in the cast."""
+
+    command: CharacterCommand
+    """What it is asked to do."""
+
+    posed: PosedCharacter
+    """The character as it is to be drawn."""
+
+    emotion: EmotionTarget
+    """The emotion that it shows."""
+
+    line: SpokenLine | None = None
+    """What it says, also if it has begun before; None for nothing."""
+
+    def messages(self) -> dict[str, object]:
+        """Return its messages by the last part of their topics."""
+        return {"command": self.command, "pose": self.posed, "emotion": self.emotion}
 
 
 @dataclass(frozen=True)
@@ -55,6 +79,9 @@ class Step:
     line: SpokenLine | None = None
     """What the character says, also if it has begun before; None for nothing."""
 
+    others: tuple[Performance, ...] = ()
+    """What the rest of the cast does."""
+
     interior: Interior | None = None
     """What is seen in the cube; None while it is closed."""
 
@@ -84,6 +111,11 @@ class Step:
             "/character/command": self.command,
             "/character/pose": self.posed,
             "/robot/emotion": self.emotion,
+            **{
+                f"/cast/{each.name}/{part}": message
+                for each in self.others
+                for part, message in each.messages().items()
+            },
         }
 
 

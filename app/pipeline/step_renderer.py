@@ -2,17 +2,17 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.cube_window import Interior
-from cubeling.app.pipeline.props import PosedBody
 from cubeling.app.pipeline.resident import MIN_SIZE
 from cubeling.app.pipeline.scenario import Outcome
 from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.table.props import PosedBody
 from cubeling.characters import PosedCharacter
 from cubeling.characters.rendering import FULL, Box, CameraView, Focus, Quality, SceneCharacter
 from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics
@@ -54,6 +54,16 @@ class FocusDistance:
             self._distance += share * (float(pose[2, 3]) - self._distance)
         self._time = state.timestamp
         return Focus(self._distance, self._distance, APERTURE_M) if self._distance else None
+
+
+@dataclass(frozen=True)
+class DrawnBody:
+    """A body of the cast, and how it looks."""
+
+    body: PosedBody
+
+    blood: float
+    """That of its `Complexion`."""
 
 
 class StepRenderer:
@@ -123,20 +133,24 @@ class StepRenderer:
             matrix, distortion = self._intrinsics.matrix, self._intrinsics.distortion
             self._stage.expect(frame.image, matrix, distortion)
 
-    def draw(self, step: Step, body: PosedBody, blood: float) -> NDArray[np.uint8] | None:
-        """Draw the picture of a step; return None without a graphics context.
-
-        `body` is the character's, and `blood` that of `Complexion`.
-        """
+    def draw(self, step: Step, cast: Sequence[DrawnBody]) -> NDArray[np.uint8] | None:
+        """Draw the picture of a step; return None without a graphics context."""
         if self._stage is None:
             return None
         focus = self._focus_distance.update(step.state) if "focus" in self._realism else None
-        seen = body.posed.visible and step.controls.camera_from_table is not None
-        characters = self._characters(step.outcome, body, step.interior, blood) if seen else []
+        lead, *others = cast
+        on_table = step.controls.camera_from_table is not None
+        seen = lead.body.posed.visible and on_table
+        characters = self._characters(step.outcome, lead, step.interior) if seen else []
+        characters += [
+            self._with_skin(each, each.body.posed)
+            for each in others
+            if each.body.posed.visible and on_table
+        ]
         floor = step.outcome.floor if seen else ()
         return self._stage.draw(self._view(step, focus), characters, floor)
 
-    def close_up(self, step: Step, body: PosedBody, blood: float) -> NDArray[np.uint8] | None:
+    def close_up(self, step: Step, lead: DrawnBody) -> NDArray[np.uint8] | None:
         """Draw a look into the open cube; return None if none is seen, or if it fills the picture.
 
         The camera stays where it is: what is in the cube is seen in the same way, only larger.
@@ -152,7 +166,7 @@ class StepRenderer:
         self._close.quality = self._quality
         # It is drawn sharper than the camera sees, as one looks more closely.
         view = replace(self._view(step, None), part=part, softness=None)
-        return self._close.draw(view, self._characters(step.outcome, body, interior, blood))
+        return self._close.draw(view, self._characters(step.outcome, lead, interior))
 
     def _part_around(self, box: Box) -> tuple[float, float, float, float] | None:
         """Return the square of the frame around a cube [px]; None if that is not worth it."""
@@ -187,24 +201,27 @@ class StepRenderer:
             return view
         return replace(view, hand=known.hand, light=known.light, softness=known.softness)
 
+    def _with_skin(self, drawn: DrawnBody, posed: PosedCharacter) -> SceneCharacter:
+        shown = drawn.blood if "blush" in self._realism else 0.0
+        return SceneCharacter(drawn.body.character, posed, "wrinkles" in self._realism, shown)
+
     def _characters(
-        self, outcome: Outcome, body: PosedBody, interior: Interior | None, blood: float
+        self, outcome: Outcome, lead: DrawnBody, interior: Interior | None
     ) -> list[SceneCharacter]:
-        """Return all that is drawn: the character on the table or in the cube, and its things."""
-
-        def with_skin(posed: PosedCharacter) -> SceneCharacter:
-            shown = blood if "blush" in self._realism else 0.0
-            return SceneCharacter(body.character, posed, "wrinkles" in self._realism, shown)
-
+        """Return the character that the cube leads, on the table or in the cube, and its things."""
+        body = lead.body
         if interior is None:
-            return [with_skin(body.posed), *(body.place_thing(thing) for thing in outcome.things)]
+            things = (body.place_thing(thing) for thing in outcome.things)
+            return [self._with_skin(lead, body.posed), *things]
         characters = [body.place_thing(thing) for thing in outcome.things if thing.hand is None]
         if interior.left_on_table > MIN_SIZE:
             shrunk = np.diag([*[interior.left_on_table] * 3, 1.0])
             placed = body.posed.table_from_character @ shrunk
-            characters.append(with_skin(replace(body.posed, table_from_character=placed)))
+            on_table = replace(body.posed, table_from_character=placed)
+            characters.append(self._with_skin(lead, on_table))
         if interior.resident is not None:
-            characters.append(replace(with_skin(interior.resident), inside=interior.box))
+            inside = replace(self._with_skin(lead, interior.resident), inside=interior.box)
+            characters.append(inside)
         return characters
 
     def close(self) -> None:

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import ReplayInputs, RobotView, Step
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.quality_control import AUTO_QUALITY, QualityControl
 from cubeling.app.running.summary import Summary

@@ -96,10 +96,11 @@ def open_session(
     cubes = [CubeModel.load(each) for each in options.cubes]
     cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
     scenario = scenario_of(options, options.scenario, cube)
-    character = load_to_play(
-        options.character or scenario.character,
-        own_motions_only=options.own_motions_only,
-        whole_limbs=options.whole_limbs,
+    character, *others = (
+        load_to_play(
+            name, own_motions_only=options.own_motions_only, whole_limbs=options.whole_limbs
+        )
+        for name in (options.character or scenario.character, *options.others)
     )
     if options.idle is not None:
         if options.controller != "tree":
@@ -131,6 +132,7 @@ def open_session(
             intrinsics,
             cube=cube,
             character=character,
+            others=others,
             context=context,
             look=options.look,
             fixed=options.keeps_scenario or not options.windowed,
@@ -143,7 +145,8 @@ def open_session(
         )
         closing.callback(playground.close)
         if options.windowed or source.live:  # else nobody waits for a frame
-            prepare_gestures(character)
+            for each in (character, *others):
+                prepare_gestures(each)
         if replayed is None and options.source.endswith(".mcap"):
             replayed = closing.enter_context(SessionFile(Path(options.source)))
         replay_inputs = None

@@ -56,7 +56,8 @@ def check_inputs(options: SessionOptions) -> None:
         raise AppError(f"there are no .wav files in a folder '{options.sounds}'")
     if ":" not in options.source:  # that of a URI, or of a drive, is left to `open_source`
         check_input(options.source, "video")
-    check_character(options.character)
+    for name in (options.character, *options.others):
+        check_character(name)
     if options.robot.startswith("sim:"):
         from cubeling.robot import simulator_of
 

@@ -36,7 +36,8 @@ class ComparisonResult:
 
     def __rich__(self) -> Table:
         table = Table("channel", "messages", "different", "first at")
-        for topic in CHANNEL_TYPES:
+        cast = sorted(each for each in self.counts if each and each not in CHANNEL_TYPES)
+        for topic in (*CHANNEL_TYPES, *cast):
             if not self.counts[topic]:
                 continue
             first = self.first.get(topic)
@@ -61,7 +62,7 @@ def check_session(
     )
     recorded = (
         (topic, time, upgrade(topic, data))
-        for topic, time, data in session.messages(*CHANNEL_TYPES)
+        for topic, time, data in session.messages(*session.channels)
     )
     with open_session(options, replayed=session) as opened:
         made = (

@@ -6,10 +6,11 @@ from numpy.typing import NDArray
 from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
-from cubeling.app.pipeline.situation import Situation
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.pursuit import Pursuit
+from cubeling.app.scenarios.shake_reaction import ShakeReaction
 from cubeling.app.scenarios.speed import SpeedDial
 from cubeling.characters import (
     IDLE_SPEED,
@@ -23,9 +24,6 @@ from cubeling.characters import (
 from cubeling.tracking import CubeControls, CubeModel
 
 Point = NDArray[np.float64]
-
-SHAKE_ACTIONS = ("jump", "wave", "cheer")
-"""What the character does when the cube is shaken, in turn, if it knows the action."""
 
 PLAYER_POSITION = np.array([0.0, 2.0])
 """A point far towards the camera, (x, z) on the table [m]: where the player sits."""
@@ -54,8 +52,7 @@ class Follow:
         self._presence = Presence()
         self._pursuit = Pursuit()
         self._half_edge = cube.edge / 2
-        self._shakes = 0
-        self._shake_action: tuple[str, bool] | None = None  # its name, and whether it has begun
+        self._shaken = ShakeReaction()
 
     def adjust(self, settings: ScenarioSettings) -> None:
         """Play on with other settings."""
@@ -68,7 +65,7 @@ class Follow:
             self._mood.reset()
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
         visible = self._presence.update(controls)
-        shake_action = self._react_to_shake(controls, situation)
+        shake_action = self._shaken.update(controls, situation)
         # As if cube and character were discs, so that the character does not enter the cube.
         clearance = self._half_edge + situation.body_length / 2
         target = _near_side(controls.position, situation.character, clearance)
@@ -90,20 +87,6 @@ class Follow:
         )
         icon = gait(speed, situation.walks)
         return Outcome(command, emotion, _hint(controls, icon), icon, events=events)
-
-    def _react_to_shake(self, controls: CubeControls, situation: Situation) -> str:
-        """Return the action that answers a shake until it is over, or ""."""
-        known = [action for action in SHAKE_ACTIONS if action in situation.actions]
-        if controls.shaken and known and self._shake_action is None:
-            self._shake_action = known[self._shakes % len(known)], False
-            self._shakes += 1
-        if self._shake_action is None:
-            return ""
-        name, begun = self._shake_action
-        character = situation.character
-        performing = character is not None and character.state == name
-        self._shake_action = None if begun and not performing else (name, begun or performing)
-        return name if self._shake_action else ""
 
 
 def _near_side(

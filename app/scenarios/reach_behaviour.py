@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cubeling.app.pipeline.props import GRIP, PosedBody, Side
+from cubeling.app.pipeline.table.props import GRIP, PosedBody, Side
 from cubeling.app.scenarios.reach_intents import Ongoing, bundled_gesture, gesture_times
 from cubeling.app.scenarios.reach_places import Point, in_front, look_about
 from cubeling.characters.behaviour import (

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.props import GRIP, Side, Thing
+from cubeling.app.pipeline.table.props import GRIP, Side, Thing
 from cubeling.characters.motion import smoothstep
 
 Point = NDArray[np.float64]

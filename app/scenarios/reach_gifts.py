@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.props import GRIP, PosedBody, Side, Thing
+from cubeling.app.pipeline.table.props import GRIP, PosedBody, Side, Thing
 from cubeling.app.scenarios.reach_gift import Gift
 
 Point = NDArray[np.float64]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.props import PosedBody
+from cubeling.app.pipeline.table.props import PosedBody
 from cubeling.characters import past_circle
 from cubeling.characters.motion import ARRIVAL_DISTANCE_M
 

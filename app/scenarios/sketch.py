@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
-from cubeling.app.pipeline.situation import Situation
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence

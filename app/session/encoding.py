@@ -60,6 +60,25 @@ APPEARANCE_TOPIC = "/picture/appearance"
 CHANNEL_TYPES: dict[str, type[Any]] = {**MESSAGE_TYPES, APPEARANCE_TOPIC: Appearance}
 """The type of the messages on each channel between camera and picture."""
 
+CAST_TYPES: dict[str, type[Any]] = {
+    "command": CharacterCommand,
+    "pose": PosedCharacter,
+    "emotion": EmotionTarget,
+}
+"""The type of the messages of each further character, whose channels are /cast/NAME/PART, by the
+last part."""
+
+
+def message_type(topic: str) -> type[Any] | None:
+    """Return the type of the messages on a channel between camera and picture; None for others.
+
+    >>> message_type("/cast/vleo/pose").__name__
+    'PosedCharacter'
+    """
+    if topic.startswith("/cast/") and topic.count("/") == 3:
+        return CAST_TYPES.get(topic.rpartition("/")[2])
+    return CHANNEL_TYPES.get(topic)
+
 
 def encode(message: object) -> bytes:
     """Return a dataclass as JSON; numbers keep every bit, and NaN becomes null.
@@ -96,7 +115,9 @@ def upgrade(topic: str, document: bytes) -> bytes:
 
     A document that no version wrote is returned as it is.
     """
-    kind = CHANNEL_TYPES[topic]
+    kind = message_type(topic)
+    if kind is None:
+        return document
     try:
         content = json.loads(document)
         newer = _upgrade_content(kind, content)
@@ -118,8 +139,11 @@ def _upgrade_content(kind: type[Any], content: Any) -> Any:
     command were single fields, of which the oldest sessions lack some. A shake was a field of its
     own among the controls. All that was before sessions held the version of their format: these
     fields tell the versions apart. Before a profile had `liveliness`, a speech moved only arms and
-    head; so it does in a replay.
+    head; so it does in a replay. Before there was a cast, no obstacle was alive.
     """
+    boxes = content.get("obstacles")
+    if boxes and "alive" not in boxes[0]:  # before there was a cast
+        content = {**content, "obstacles": [{**each, "alive": False} for each in boxes]}
     speech = content.get("speech")
     if isinstance(speech, dict) and "liveliness" not in speech.get("profile", {"liveliness": 0}):
         still = {**speech["profile"], "liveliness": 0.0}

@@ -30,6 +30,9 @@ class SessionOptions:
     character: str | None = None
     """A bundled character or a .glb file; None for the scenario's own."""
 
+    others: tuple[str, ...] = ()
+    """The rest of the cast: bundled characters or files, at most `MAX_CAST` with the first."""
+
     controller: str = "tree"
     """What moves the character: one of `cubeling.characters.CONTROLLER_CHOICES`."""
 
@@ -171,6 +174,7 @@ class SessionOptions:
             "scenario": self.scenario,
             "cube": self.cube or "",
             "character": self.character or "",
+            "others": "\n".join(self.others),
             "controller": self.controller,
             "motions": "\n".join(self.motions),
             "idle": "" if self.idle is None else str(self.idle),
@@ -202,6 +206,7 @@ class SessionOptions:
             source=source,
             cubes=(metadata["cube"],) if metadata.get("cube") else (),
             character=metadata.get("character") or None,
+            others=tuple(metadata.get("others", "").splitlines()),
             controller=metadata.get("controller", "tree"),
             motions=tuple(metadata.get("motions", "").splitlines()),
             idle=Path(metadata["idle"]) if metadata.get("idle") else None,

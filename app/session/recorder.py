@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from datetime import datetime
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +21,9 @@ from mcap_protobuf.schema import register_schema
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.session.encoding import (
-    CHANNEL_TYPES,
     CLOCK_RECORD,
     CLOCK_ZERO,
     FORMAT_KEY,
@@ -35,6 +34,7 @@ from cubeling.app.session.encoding import (
     SESSION_RECORD,
     encode,
     encode_sound,
+    message_type,
     schema,
 )
 from cubeling.app.session.inputs import RecordedInputs
@@ -51,8 +51,7 @@ MAX_QUEUED_WRITES = 2048
 """Writes that may wait for a slow disk; with more, recording stops instead of delaying frames. They
 are some seconds of a session, as a disk may take that long to sync."""
 
-JSON_SCHEMAS = {
-    **{topic: (f"cubeling.{kind.__name__}", schema(kind)) for topic, kind in CHANNEL_TYPES.items()},
+OTHER_SCHEMAS = {
     INPUTS_TOPIC: ("cubeling.RecordedInputs", schema(RecordedInputs)),
     "/robot/wire": (
         "cubeling.Wire",
@@ -63,7 +62,14 @@ JSON_SCHEMAS = {
         b'{"type":"object","properties":{"event":{"type":"string"}}}',
     ),
 }
-"""Name and text of the JSON Schema of each topic."""
+"""Name and text of the JSON Schema of each topic that is not between camera and picture."""
+
+
+@cache
+def json_schema(topic: str) -> tuple[str, bytes]:
+    """Return name and text of the JSON Schema of a topic."""
+    kind = message_type(topic)
+    return OTHER_SCHEMAS[topic] if kind is None else (f"cubeling.{kind.__name__}", schema(kind))
 
 
 class Recorder(Closeable):
@@ -269,7 +275,7 @@ class Recorder(Closeable):
         self._message(topic, "protobuf", schema_id, message.SerializeToString, timestamp)
 
     def _json(self, topic: str, document: Callable[[], bytes], timestamp: float) -> None:
-        name, text = JSON_SCHEMAS[topic]
+        name, text = json_schema(topic)
         schema_id = partial(self._writer.register_schema, name, "jsonschema", text)
         self._message(topic, "json", schema_id, document, timestamp)
 

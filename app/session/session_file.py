@@ -2,7 +2,6 @@
 
 import json
 import os
-import struct
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -12,16 +11,13 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any, BinaryIO, Self
 
-from mcap.exceptions import McapError
 from mcap.reader import McapReader, NonSeekingReader, SeekingReader
-from mcap.records import Chunk, DataEnd, Metadata
-from mcap.stream_reader import StreamReader
-from zstandard import ZstdError
+from mcap.summary import Summary
 
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.session.encoding import (
     APPEARANCE_TOPIC,
     CHANNEL_TYPES,
@@ -36,8 +32,10 @@ from cubeling.app.session.encoding import (
     SESSION_RECORD,
     decode,
     decode_sound,
+    message_type,
 )
-from cubeling.app.session.file_start import MCAP_MAGIC, open_session_file
+from cubeling.app.session.file_records import READ_ERRORS, is_whole, metadata_of
+from cubeling.app.session.file_start import open_session_file
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
 from cubeling.characters import CharacterCommand, SpeechIntent
@@ -47,13 +45,6 @@ START_OVER_EVENT = "start over"
 
 INSIDE_EVENT = "cube opened or closed"
 """Event of a player who asks to open the cube, or to close it."""
-
-READ_ERRORS = (
-    *(McapError, EOFError, ValueError, struct.error, LookupError, OSError, ZstdError),
-    *(OverflowError, RuntimeError),
-)
-"""What the MCAP reader raises for a damaged file: one that ends early, an index that points to no
-channel (KeyError) or before the file (OSError), a chunk that cannot be decompressed."""
 
 FIELD_OF_TOPIC = {
     "/cube/state": "state",
@@ -108,10 +99,10 @@ class SessionFile:
     ) -> None:
         self.path, self._salvage = path, salvage
         self._file = opened or open_session_file(path)
-        self._is_whole = _is_whole(self._file)
+        self._is_whole = is_whole(self._file)
         # No record is longer than the file: a damaged length takes no memory.
         self._size = self._file.seek(0, os.SEEK_END)
-        self._metadata = _metadata(self._file, self._size)
+        self._metadata = metadata_of(self._file, self._size)
         version = self._metadata.get(SESSION_RECORD, {}).get(FORMAT_KEY, "0")
         if not version.isdecimal() or int(version) > SESSION_FORMAT:
             self.close()
@@ -204,6 +195,25 @@ class SessionFile:
     def has(self, *topics: str) -> bool:
         """Return whether there are messages on all of some channels."""
         return all(next(self.messages(topic), None) is not None for topic in topics)
+
+    @cached_property
+    def channels(self) -> tuple[str, ...]:
+        """The channels between camera and picture, those of its cast too.
+
+        Raises
+        ------
+        AppError
+            The file is damaged.
+        """
+        if self._is_whole:
+            try:
+                summary = self._index()[1]
+            except READ_ERRORS as error:
+                raise AppError(f"cannot read the session '{self.path}': {error}") from error
+            topics = {each.topic for each in summary.channels.values()}
+        else:
+            topics = {topic for topic, _, _ in self.messages()}
+        return tuple(sorted(topic for topic in topics if message_type(topic) is not None))
 
     @property
     def has_channels(self) -> bool:
@@ -318,14 +328,21 @@ class SessionFile:
             for time in sorted(asked | speech.keys())
         }
 
+    def _index(self) -> tuple[SeekingReader, Summary]:
+        """Return a reader of a whole session, and its index; raises one of `READ_ERRORS`."""
+        self._file.seek(0)
+        reader = SeekingReader(self._file, record_size_limit=self._size)
+        summary = reader.get_summary()
+        if summary is None:
+            raise ValueError("it has no index")
+        return reader, summary
+
     def _indexed_frames(self) -> tuple[int, float]:
         """Return how many camera frames a whole session has, and their duration [s]."""
         try:
-            self._file.seek(0)
-            reader = SeekingReader(self._file, record_size_limit=self._size)
-            summary = reader.get_summary()
-            if summary is None or summary.statistics is None:
-                raise AppError(f"cannot read the session '{self.path}': it has no index")
+            reader, summary = self._index()
+            if summary.statistics is None:
+                raise ValueError("it has no index")
             ids = {channel.topic: number for number, channel in summary.channels.items()}
             counts = summary.statistics.channel_message_counts
             frames = counts.get(ids.get(IMAGE_TOPIC, -1), 0)
@@ -367,25 +384,3 @@ def _end(reader: SeekingReader, *, last: bool) -> float:
     if found is None:
         raise ValueError("its index leads to no frame")
     return found[2].log_time / 1e9
-
-
-def _metadata(file: BinaryIO, size: int) -> dict[str, dict[str, str]]:
-    """Return the metadata of a session, which the recorder writes first."""
-    metadata: dict[str, dict[str, str]] = {}
-    file.seek(0)
-    try:
-        for record in StreamReader(file, record_size_limit=size).records:
-            if isinstance(record, Metadata):
-                metadata[record.name] = record.metadata
-            elif isinstance(record, Chunk | DataEnd):
-                break
-    except READ_ERRORS:
-        pass  # what is whole of it
-    return metadata
-
-
-def _is_whole(file: BinaryIO) -> bool:
-    """Whether a file that begins with `MCAP_MAGIC` was written to its end."""
-    size = file.seek(0, os.SEEK_END)
-    file.seek(-min(size, len(MCAP_MAGIC)), os.SEEK_END)
-    return file.read() == MCAP_MAGIC and size > len(MCAP_MAGIC)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.sound.cues import SoundCues, pan_of
 from cubeling.app.sound.loudspeaker import Loudspeaker
 from cubeling.app.sound.mixer import Mixer

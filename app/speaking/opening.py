@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from functools import lru_cache
 
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT
 from cubeling.app.speaking.recorded import RecordedSpeaker, Speaker

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Protocol
 
-from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
 

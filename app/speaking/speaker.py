@@ -4,8 +4,8 @@ import queue
 import threading
 from collections.abc import Callable
 
-from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.speaking.line_chooser import LineChooser, LineRequest
 from cubeling.app.speaking.lines import SILENT, ScenarioLines
 from cubeling.characters import CharacterError

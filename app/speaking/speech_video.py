@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.affect import Emotion
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.sound import SAMPLE_RATE
 from cubeling.app.sound.session_sound import at_sample_rate
 from cubeling.app.speaking.view import View

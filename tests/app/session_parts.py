@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from cubeling.app.pipeline.spoken_line import SpokenLine
 from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.running.replay_check import ComparisonResult, check_session
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.inputs import RecordedInputs

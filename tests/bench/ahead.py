@@ -19,6 +19,9 @@ import cubeling.app.scenarios as _scenarios  # registers them
 from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.pipeline.table.obstacles import Obstacles, view_of
+from cubeling.app.pipeline.table.situation import table_from_cube
 from cubeling.app.session import messages
 from cubeling.app.session.bundled import bundled_session
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
@@ -134,7 +137,7 @@ def _frames(states: list[CubeState], ahead: float) -> Iterator[tuple[Array, Arra
     playground = Playground("follow", Intrinsics.guess((1280, 720)), look="cube")
     skeleton, eye = playground.character.skeleton, playground.character.anatomy.joint("leftEye")
     rest = skeleton.rest.globals(skeleton)[eye, :3, :3]
-    track = Track()
+    track, obstacles = Track(), Obstacles(playground.cube.edge)
     for state in states:
         pose = state.camera_from_cube
         if state.visible and pose is not None:
@@ -148,9 +151,12 @@ def _frames(states: list[CubeState], ahead: float) -> Iterator[tuple[Array, Arra
         table = se3.inverse(controls.camera_from_table)
         soon = replace(controls, position=(table @ expected.camera_from_cube)[[0, 2], 3])
         predicted = replace(state, camera_from_cube=expected.camera_from_cube)
-        decision = playground.decide(predicted, soon, Inputs())
-        posed = playground.animate(playground.command(predicted, soon, decision, Inputs()))
-        playground._posed = posed
+        cast, inputs = playground.cast, Inputs()
+        decisions = cast.decide(soon, table_from_cube(predicted, soon), inputs)
+        things, view = obstacles.update(predicted, soon), view_of(soon, playground.sight.lens)
+        cast.perform(predicted, soon, decisions, inputs, things, view, ReplayInputs())
+        posed = cast.lead.posed
+        assert posed is not None
         placed = posed.table_from_character @ posed.pose.globals(skeleton)[eye]
         looking = placed[:3, :3] @ rest.T @ (0.0, 0.0, 1.0)
         way = (table @ pose)[:3, 3] - placed[:3, 3]

@@ -24,7 +24,7 @@ frame, or if the cube hides it in more than 10 % of the frames of a row.
 import argparse
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -34,16 +34,17 @@ from rich.console import Console
 from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs, Step
+from cubeling.app.pipeline.table.obstacles import Obstacles
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.scenarios import find_scenario
 from cubeling.app.session import SessionFile
 from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.app.session.encoding import decode
-from cubeling.characters import Character, CharacterCommand
+from cubeling.characters import Character, Obstacle
 from cubeling.characters.body.capsules import segment_distances
 from cubeling.characters.body.extreme_vertices import SkinnedPoints
 from cubeling.characters.skeleton.masks import subtree
-from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics, open_source
+from cubeling.tracking import CubeControls, CubeModel, CubeState, Frame, Intrinsics, open_source
 from cubeling.tracking.synthetic import SyntheticOptions, open_synthetic
 from cubeling.tracking.synthetic.choreography import Choreography, SceneState
 from cubeling.tracking.synthetic.hand import hand_at
@@ -72,12 +73,18 @@ TABLE = look_at(EYE_M, LOOK_AT_M)
 """`camera_from_table` of the synthetic camera."""
 
 
+class _NoObstacles(Obstacles):
+    def update(self, state: CubeState, controls: CubeControls) -> tuple[Obstacle, ...]:
+        return ()
+
+
 class Unaware(Playground):
     """A playground whose characters are not told of the cube."""
 
-    def command(self, *given: object, **named: object) -> CharacterCommand:
-        """Return the command without obstacles."""
-        return replace(super().command(*given, **named), obstacles=())  # type: ignore[arg-type]
+    def play(self, *given: object, **named: object) -> None:
+        """Start a scenario without obstacles."""
+        super().play(*given, **named)  # type: ignore[arg-type]
+        self._obstacles = _NoObstacles(self.cube.edge)
 
 
 class Surface:

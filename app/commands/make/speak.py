@@ -108,7 +108,7 @@ def speak(
     if live and not has_display():
         raise AppError("there is no display here: --live needs a window")
     # Nothing above needs more than numpy: what is misspelt is refused before the rest is loaded.
-    from cubeling.app.pipeline.spoken_line import SpokenLine
+    from cubeling.app.pipeline.table.spoken_line import SpokenLine
     from cubeling.app.sound import write_wave
     from cubeling.app.sound.session_sound import at_sample_rate
     from cubeling.app.speaking.live import speak_live

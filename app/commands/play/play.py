@@ -27,6 +27,7 @@ from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
     INSIDE_HELP,
     PICTURE_GROUP,
+    CastOption,
     CharacterOption,
     CodecOption,
     ControllerOption,
@@ -54,6 +55,7 @@ from cubeling.app.commands.play.play_options import (
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import (
+    cast_of,
     inside_of,
     realism_of,
 )
@@ -70,6 +72,7 @@ def play(
     source: SourceOption = DEFAULT_CAMERA,
     cubes: CubesOption = None,
     character: CharacterOption = None,
+    cast: CastOption = None,
     controller: ControllerOption = "tree",
     motions: MotionsOption = None,
     idle: IdleOption = None,
@@ -135,11 +138,13 @@ def play(
     from cubeling.app.session import SessionOptions
 
     record_codec, video_codec = codecs_of(codec, record, output)
+    character, others = cast_of(cast, character)
     options = SessionOptions(
         scenario=scenario,
         source=source,
         cubes=tuple(cubes or ()),
         character=character,
+        others=others,
         controller=controller,
         motions=tuple(motions or ()),
         idle=idle,

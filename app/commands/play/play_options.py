@@ -62,6 +62,14 @@ CubesOption = Annotated[
 CharacterOption = Annotated[
     str | None, typer.Option(help="A bundled character, or a .glb, .gltf or .vrm file.")
 ]
+CastOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Several characters, up to five, separated by commas: the cube leads the first, the "
+        "others watch. For example --cast human,vleo.",
+        rich_help_panel=CHARACTER_GROUP,
+    ),
+]
 ControllerOption = Annotated[
     str,
     typer.Option(

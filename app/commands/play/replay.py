@@ -25,6 +25,7 @@ from cubeling.app.commands.play.play_options import (
     ALL_REALISM,
     INSIDE_HELP,
     PICTURE_GROUP,
+    CastOption,
     CharacterOption,
     CodecOption,
     FolderOption,
@@ -43,7 +44,7 @@ from cubeling.app.commands.play.play_options import (
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.choices import inside_of, realism_of
+from cubeling.app.pipeline.choices import cast_of, inside_of, realism_of
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
@@ -58,6 +59,7 @@ def replay(
     session: Annotated[Path, typer.Argument(help="A session recorded with --record.")],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
     character: CharacterOption = None,
+    cast: CastOption = None,
     controller: Annotated[
         str | None,
         typer.Option(
@@ -145,12 +147,14 @@ def replay(
         if inside:
             inside_of(inside)
         record_codec, video_codec = codecs_of(codec, record, output)
+        character, others = cast_of(cast, character)
         chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
         check_publisher(mqtt, player)
         asked = SessionOptions(
             scenario=scenario or "",
             source=str(session),
             character=character,
+            others=others,
             motions=tuple(motions or ()),
             idle=idle,
             personality=personality,
@@ -176,6 +180,7 @@ def replay(
             recorded,
             scenario=scenario or recorded.scenario,
             character=character or recorded.character,
+            others=others if cast else recorded.others,
             controller=controller or recorded.controller,
             motions=tuple(motions) if motions else () if controller else recorded.motions,
             idle=idle or recorded.idle,

@@ -124,7 +124,7 @@ def _exchange_character(
     session: OpenedSession, transport: Transport, name: str, character: Character
 ) -> None:
     try:
-        session.playground.cast(character)
+        session.playground.exchange_character(character)
     except AppError as error:
         raise AppError(f"{error}, as {session.options.scenario} asks") from error
     session.options = replace(session.options, character=name)

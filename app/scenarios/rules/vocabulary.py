@@ -15,7 +15,7 @@ from cubeling.app.errors import AppError
 
 if TYPE_CHECKING:  # a file is checked before numpy is loaded
     from cubeling.app.pipeline.scenario import Inputs
-    from cubeling.app.pipeline.situation import Situation
+    from cubeling.app.pipeline.table.situation import Situation
     from cubeling.tracking import CubeControls
 
 PACES = {"walk": 2.5, "run": 4.5}

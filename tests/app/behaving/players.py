@@ -4,7 +4,7 @@ import numpy as np
 
 from cubeling.app.behaving.player import BehaviourPlayer
 from cubeling.app.behaving.voice import PatientSource, line_of
-from cubeling.app.pipeline.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.characters import Character
 from cubeling.characters.speech.speech import Speech, Word
 from tests.bundled_characters import bundled_character

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.cast.cast import Cast
 from cubeling.app.running.clock import Pace
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
@@ -144,13 +144,13 @@ def test_a_player_who_started_over_in_a_frame_that_is_not_drawn_did_so_in_it(
     play_slowly, monkeypatch
 ):
     cleared = []
-    decide = Playground.decide
+    decide = Cast.decide
 
-    def note(self, state, controls, inputs):
+    def note(self, controls, cube, inputs):
         if inputs.clear:
             cleared.append(controls.timestamp)
-        return decide(self, state, controls, inputs)
+        return decide(self, controls, cube, inputs)
 
-    monkeypatch.setattr(Playground, "decide", note)
+    monkeypatch.setattr(Cast, "decide", note)
     play_slowly()
     assert cleared == sorted(STARTED_OVER)

@@ -10,7 +10,7 @@ import pytest
 from cubeling import app
 from cubeling.app.pipeline.registry import added_scenarios
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.situation import Situation
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios import make_scenario, scenario_names
 from cubeling.app.session import messages, session_info
 from cubeling.app.session.encoding import decode

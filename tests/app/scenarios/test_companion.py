@@ -3,7 +3,7 @@
 import pytest
 
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.situation import Situation
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios import make_scenario
 from cubeling.tracking import CubeModel
 

@@ -11,8 +11,8 @@ from cubeling.affect.traits import AffectImpulse
 from cubeling.affect.words import closest_word
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import EmotionTarget, Inputs
-from cubeling.app.pipeline.situation import Situation
 from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.scenarios import SCENARIOS, make_scenario
 from cubeling.app.scenarios.mood import MoodController

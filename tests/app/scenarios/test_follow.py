@@ -3,9 +3,9 @@
 import numpy as np
 
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.situation import Situation
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios import make_scenario
-from cubeling.app.scenarios.follow import SHAKE_ACTIONS
+from cubeling.app.scenarios.shake_reaction import SHAKE_ACTIONS
 from cubeling.characters import Animator, Character
 
 

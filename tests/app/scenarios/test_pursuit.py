@@ -9,7 +9,7 @@ import pytest
 import tests.sessions
 from cubeling.affect import Personality
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.situation import Situation
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios import make_scenario
 from cubeling.app.scenarios.pursuit import IGNORED_S, Pursuit
 from cubeling.characters import Animator, Character, RootDelta

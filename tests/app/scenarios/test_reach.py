@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline.props import GRIP, BodyParts, PosedBody, Thing
 from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings
-from cubeling.app.pipeline.situation import Situation
+from cubeling.app.pipeline.table.props import GRIP, BodyParts, PosedBody, Thing
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios.reach import Reach
 from cubeling.app.scenarios.reach_behaviour import GESTURES
 from cubeling.app.scenarios.reach_gifts import AT_HAND_M

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline.props import GRIP
+from cubeling.app.pipeline.table.props import GRIP
 from cubeling.app.scenarios.reach_gift import HOP_M, HOP_S, SETTLE_S
 from cubeling.app.scenarios.reach_gifts import AT_HAND_M, HOMES, PATIENCE_S, REJOICE_S, Gifts
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.situation import Situation
+from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios import make_scenario
 from cubeling.app.scenarios.sketch import MAX_POINTS
 

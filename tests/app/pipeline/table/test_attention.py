@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.attention import Attention
 from cubeling.app.pipeline.choices import LOOK_CHOICES
+from cubeling.app.pipeline.table.attention import Attention
 from cubeling.characters import CharacterCommand
 from cubeling.tracking import CubeControls, CubeState
 from tests.characters.commands import command

@@ -61,6 +61,9 @@ class BodyParts:
     stand: float
     """How far from a thing it stands that it takes [m on the table]."""
 
+    head: int | None = None
+    """Joint of its head; None for a character without one."""
+
     @staticmethod
     def of(character: Character, scale: float) -> "BodyParts":
         """Return the parts of a character, which is `scale` times as large on the table.
@@ -84,7 +87,8 @@ class BodyParts:
         chest = np.array([0.0, 0.6 * character.height, 0.0])
         if joint is not None:
             chest = rest[joint, :3, 3]
-        return BodyParts(hands, chest, touching, _stand_distance(character, scale))
+        stand = _stand_distance(character, scale)
+        return BodyParts(hands, chest, touching, stand, anatomy.joint("head"))
 
 
 def _stand_distance(character: Character, scale: float) -> float:
@@ -125,6 +129,12 @@ class PosedBody:
         """The middle of its chest when it stands straight, (3,) in the table frame [m]."""
         placed = self.posed.table_from_character
         return np.asarray(placed[:3, :3] @ self.parts.chest + placed[:3, 3])
+
+    @property
+    def face(self) -> Point:
+        """Where others look that look at it, (3,) in the table frame [m]."""
+        head = self.parts.head
+        return self.chest if head is None else np.asarray(self._table_from_joints[head, :3, 3])
 
     @property
     def has_hands(self) -> bool:

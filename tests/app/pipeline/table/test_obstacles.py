@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cubeling.app.pipeline.obstacles import KEPT_S, LETS_GO_S, Obstacles, view_of
+from cubeling.app.pipeline.table.obstacles import KEPT_S, LETS_GO_S, Obstacles, view_of
 from cubeling.tracking import CubeControls, CubeState, Intrinsics
 
 EDGE = 0.06

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline.spoken_line import Speaking, SpokenLine
+from cubeling.app.pipeline.table.spoken_line import Speaking, SpokenLine
 from cubeling.characters import ActionIntent, CharacterCommand
 from cubeling.characters.speech import DEFAULT_PROFILE, Utterance
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.props import PosedBody
+from cubeling.app.pipeline.table.props import PosedBody
 from cubeling.characters import PosedCharacter
 from cubeling.tracking import CubeControls, CubeState
 

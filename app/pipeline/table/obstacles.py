@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.situation import table_from_cube
+from cubeling.app.pipeline.table.situation import table_from_cube
 from cubeling.characters import Obstacle, TableView
 from cubeling.tracking import CubeControls, CubeState, Intrinsics
 

@@ -1,0 +1,1 @@
+"""The cast: the characters on the table, and what each of them does in a frame."""
