@@ -9,6 +9,7 @@ from cubeling.tracking.cube.icons import (
 )
 from cubeling.tracking.cube.marker import marker_cells as marker_cells
 from cubeling.tracking.cube.model import (
+    SECOND as SECOND,
     CubeModel as CubeModel,
     Face as Face,
     bundled_cubes as bundled_cubes,
@@ -41,6 +42,7 @@ from cubeling.tracking.sources.mcap_camera import (
     FOCAL_DEVIATION as FOCAL_DEVIATION,
     LENS_RECORD as LENS_RECORD,
 )
+from cubeling.tracking.tracker.frame_markers import FrameMarkers as FrameMarkers
 from cubeling.tracking.tracker.print_check import (
     PrintCheck as PrintCheck,
     PrintFault as PrintFault,

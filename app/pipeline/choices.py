@@ -3,6 +3,8 @@
 `AppearanceMeter` measures what the realism needs, and `CubeWindow` shows the character inside.
 """
 
+from collections.abc import Sequence
+
 from cubeling.app.errors import AppError
 
 REALISM_CHOICES = {
@@ -60,6 +62,29 @@ def cast_of(text: str | None, character: str | None) -> tuple[str | None, tuple[
             f"--cast takes one to {MAX_CAST} characters, separated by commas, not '{text:.60}'"
         )
     return names[0], names[1:]
+
+
+MAX_PLAYERS = 2
+"""Most players with a cube each: there is one more set of markers of the bundled cubes."""
+
+
+def checked_players(number: float) -> int:
+    """Return a number of players; raise AppError for one that cannot play."""
+    if number not in range(1, MAX_PLAYERS + 1):
+        raise AppError(f"one or {MAX_PLAYERS} can play at once, not {number:g}")
+    return int(number)
+
+
+def robots_of(urls: Sequence[str], players: int) -> tuple[str, str]:
+    """Return the robots of the first and the second player; raise AppError for more than play.
+
+    >>> robots_of(["sim:pleo"], 2)
+    ('sim:pleo', 'none')
+    """
+    if len(urls) > players:
+        raise AppError(f"there are {len(urls)} robots for {players}: --players 2 has two")
+    first, second = (*urls, *("sim", "none")[len(urls) :])
+    return first, second
 
 
 def check_look(name: str) -> None:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.step import Rect
 from cubeling.characters import Character, PosedCharacter
-from cubeling.tracking import CubeControls, CubeModel, CubeState
+from cubeling.tracking import CubeState
 
 HAND_EDGES = 0.6
 """How far a hand reaches around the cube, in edges of it."""
@@ -20,25 +20,25 @@ Array = NDArray[np.float64]
 
 
 def picture_regions(
-    state: CubeState,
-    controls: CubeControls,
-    cube: CubeModel,
+    cubes: Sequence[tuple[CubeState, float]],
+    table: Array | None,
     cast: Sequence[tuple[Character, PosedCharacter]],
     interior: Interior | None,
     matrix: Array,
 ) -> tuple[Rect, ...]:
     """Return where the cube and the characters on the table are seen [px], as far as they are.
 
+    `cubes` are those of the players with their edges [m], `table` is `camera_from_table`,
     `cast` is first who may be in the cube, then all others; `matrix` is the camera's, (3, 3) [px],
     and `interior` what is seen in the cube, None for a closed one.
     """
-    table = controls.camera_from_table
     regions: list[Rect | None] = []
-    if state.camera_from_cube is not None:
-        regions.append(_cube_region(state.camera_from_cube, cube.edge, matrix))
+    for state, edge in cubes:
+        if state.camera_from_cube is not None:
+            regions.append(_cube_region(state.camera_from_cube, edge, matrix))
     on_table = cast if interior is None or interior.left_on_table > 0.0 else cast[1:]
-    for character, posed in on_table if table is not None else ():
-        if posed.visible:
+    for character, posed in on_table:
+        if table is not None and posed.visible:
             regions.append(_character_region(table, character, posed, matrix))
     return tuple(region for region in regions if region is not None)
 

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.cast.cast import Cast
+from cubeling.app.pipeline.cast.further_members import distinct_names, further_members
 from cubeling.app.pipeline.cast.member import CastMember
-from cubeling.app.pipeline.cast.waiting_members import cast_names, waiting_members
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.picture_regions import picture_regions
+from cubeling.app.pipeline.player import Player, check_players
 from cubeling.app.pipeline.registry import make_scenario
 from cubeling.app.pipeline.scenario import (
     AdjustableScenario,
@@ -30,8 +31,8 @@ from cubeling.app.pipeline.sight import Sight
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import DrawnBody, StepRenderer
 from cubeling.app.pipeline.table.attention import Attention
-from cubeling.app.pipeline.table.obstacles import Obstacles, view_of
-from cubeling.app.pipeline.table.situation import table_from_cube
+from cubeling.app.pipeline.table.obstacles import view_of
+from cubeling.app.pipeline.table.situation import SeenCube
 from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.characters import (
     Animator,
@@ -41,7 +42,7 @@ from cubeling.characters import (
     first_suitable,
 )
 from cubeling.characters.rendering import Quality
-from cubeling.tracking import CubeControls, CubeGestures, CubeModel, CubeState, Frame, Intrinsics
+from cubeling.tracking import CubeModel, Frame, FrameMarkers, Intrinsics, MarkerDetector
 from cubeling.tracking.appearance import APPEARANCE_PARTS
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
 LOOK_INSIDE = "Look into the cube: turn it, or tip it"
 """What the player is told when the cube has opened."""
 
-STATE_NAMES = ("cast", "tracked", "_gestures", "_obstacles", "_window")
+STATE_NAMES = ("cast", "players", "_window")
 """The attributes of a playground that change from frame to frame."""
 
 
@@ -72,6 +73,10 @@ class Playground:
         The character that the cube leads; None for the scenario's own.
     others
         The rest of the cast, at most four characters.
+    further_cubes
+        Those of further players, each of whom leads one of `others` in the same scenario.
+    settings
+        Those of the further players; None for the usual ones. The first one's are in `scenario`.
     context
         Where to draw, from `create_context`; the caller releases it. None for no pictures.
     look
@@ -108,6 +113,8 @@ class Playground:
         cube: CubeModel | None = None,
         character: Character | None = None,
         others: Sequence[Character] = (),
+        further_cubes: Sequence[CubeModel] = (),
+        settings: ScenarioSettings | None = None,
         context: "moderngl.Context | None" = None,
         look: str = "auto",
         fixed: bool = False,
@@ -123,6 +130,7 @@ class Playground:
         self.known_cubes = tuple(known_cubes)
         self._look, self._lap = look, lap
         self._controller, self._inside, self._others = controller, inside, tuple(others)
+        self._further_cubes, self._settings = tuple(further_cubes), settings or ScenarioSettings()
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         parts = tuple(each for each in APPEARANCE_PARTS if each in realism)
@@ -144,19 +152,33 @@ class Playground:
         """
         cube = cube or CubeModel.load(scenario.cube)
         character = character or Character.load(scenario.character)
-        name, *names = cast_names([character, *self._others])
-        edge, look = cube.edge, self._look
-        attention = Attention(look, edge)
+        cubes, look = [cube, *self._further_cubes], self._look
+        check_players(cubes)
+        with scenario_errors(type(scenario)):
+            led = [type(scenario)(each, self._settings) for each in self._further_cubes]
+        name, *names = distinct_names(each.name for each in (character, *self._others))
+        attention, edges = Attention(look, cube.edge), [each.edge for each in cubes]
         lead = CastMember(name, character, scenario, attention, controller=self._controller)
-        self.cast = Cast([lead, *waiting_members(names, self._others, look, edge)])
-        """Who is on the table: first the character that the cube leads."""
-        self.cube = cube
-        self.tracked = TrackedCube(cube, self.intrinsics, self.known_cubes)
-        """The cube in view, and what it has told of the camera."""
-        self._gestures = CubeGestures(cube)
+        self.cast = Cast([lead, *further_members(names, self._others, led, look, edges)])
+        """Who is on the table: first the character that the first cube leads."""
+        self.players = tuple(
+            Player(name, each, self.intrinsics, self.known_cubes)
+            for name, each in zip(distinct_names(e.name for e in cubes), cubes, strict=True)
+        )
+        """Who plays, each with a cube."""
+        self._detectors = {each.dictionary: MarkerDetector(each.dictionary) for each in cubes}
         self.sight.begin(cube)
-        self._obstacles = Obstacles(cube.edge)
         self._window = CubeWindow(cube, character, scenario.roles, self._inside)
+
+    @property
+    def cube(self) -> CubeModel:
+        """The cube of the first player."""
+        return self.players[0].cube
+
+    @property
+    def tracked(self) -> TrackedCube:
+        """The first player's cube in view, and what it has told of the camera."""
+        return self.players[0].tracked
 
     @property
     def scenario(self) -> Scenario:
@@ -277,10 +299,13 @@ class Playground:
         replay = replay or ReplayInputs()
         if drawn:
             self.expect(frame)
-        state = replay.state or self.tracked.track(frame)
+        first, *further = self.players
+        markers = FrameMarkers(frame, self._detectors) if further else None
+        state = replay.state or first.tracked.track(frame, markers)
         self.sight.follow(state, self.cube)
         self._lap("tracking")
-        controls = replay.controls or self.gesture(state)
+        controls = replay.controls or first.gesture(state)
+        played = [each.play(frame, markers, controls) for each in further if markers is not None]
         self._lap("gestures")
         appearance = replay.appearance
         if appearance is None and (drawn if measured is None else measured):
@@ -288,11 +313,18 @@ class Playground:
         self._lap("appearance")
         inputs = inputs or Inputs()
         cast = self.cast
-        decisions = cast.decide(controls, table_from_cube(state, controls), inputs)
-        things, view = self._obstacles.update(state, controls), view_of(controls, self.sight.lens)
-        self.tracked.advise(frame, state)
+        seen = [SeenCube(state, controls), *(SeenCube(p.state, p.controls) for p in played)]
+        decisions = cast.decide(seen, inputs)
+        for player, cube in zip(self.players, seen, strict=True):
+            player.tracked.advise(frame, cube.state)
         self._lap("scenario")
-        commands = cast.perform(state, controls, decisions, inputs, things, view, replay)
+        things = [
+            each
+            for player, cube in zip(self.players, seen, strict=True)
+            for each in player.obstacles.update(cube.state, cube.controls)
+        ]
+        view = view_of(controls, self.sight.lens)
+        commands = cast.perform(seen, decisions, inputs, tuple(things), view, replay)
         command, decision, posed = commands[0], decisions[0], cast.lead.posed
         assert posed is not None, "it has just performed"
         interior = self._window.update(state, controls, command, inputs.inside)
@@ -306,9 +338,8 @@ class Playground:
             posed,
             picture=None,
             subjects=picture_regions(
-                state,
-                controls,
-                self.cube,
+                [(state, self.cube.edge), *((each.state, each.edge) for each in played)],
+                controls.camera_from_table,
                 [(each.character, each.posed) for each in cast.members if each.posed],
                 interior,
                 self.sight.lens.matrix,
@@ -317,6 +348,7 @@ class Playground:
             has_intensity=self.scenario.has_intensity,
             line=cast.lead.speaking.line if command.speech is not None else None,
             others=cast.performances(commands, decisions),
+            players=tuple(played),
             interior=interior,
             appearance=appearance,
             tracker_error="" if replay.state else self.tracked.error,
@@ -329,10 +361,6 @@ class Playground:
     def expect(self, frame: Frame) -> None:
         """Begin to draw a frame, as far as nothing of what is in it is known."""
         self._renderer.expect(frame)
-
-    def gesture(self, state: CubeState) -> CubeControls:
-        """Compute what the hand does with the cube."""
-        return self._gestures.update(state)
 
     def _hint(self, decision: Outcome) -> str:
         """Return what the player can do now; what the cube in view is comes first."""

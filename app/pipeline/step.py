@@ -43,6 +43,27 @@ class Performance:
 
 
 @dataclass(frozen=True)
+class Played:
+    """What a further player does in a frame."""
+
+    name: str
+    """Its name among the players: that of the cube."""
+
+    state: CubeState
+    """Where the cube is."""
+
+    controls: CubeControls
+    """What the hand does with it, on the table of the first player."""
+
+    edge: float
+    """Of the cube [m]."""
+
+    def messages(self) -> dict[str, object]:
+        """Return its messages by the last part of their topics."""
+        return {"state": self.state, "controls": self.controls}
+
+
+@dataclass(frozen=True)
 class Step:
     """The result of one frame: every message of the pipeline."""
 
@@ -82,6 +103,9 @@ class Step:
     others: tuple[Performance, ...] = ()
     """What the rest of the cast does."""
 
+    players: tuple[Played, ...] = ()
+    """What the further players do."""
+
     interior: Interior | None = None
     """What is seen in the cube; None while it is closed."""
 
@@ -114,6 +138,11 @@ class Step:
             **{
                 f"/cast/{each.name}/{part}": message
                 for each in self.others
+                for part, message in each.messages().items()
+            },
+            **{
+                f"/cubes/{each.name}/{part}": message
+                for each in self.players
                 for part, message in each.messages().items()
             },
         }

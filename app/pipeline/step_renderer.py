@@ -188,12 +188,17 @@ class StepRenderer:
         box = None if step.interior is None else step.interior.box
         if box is None and pose is not None:
             box = Box(pose, self._edge)
+        others = (
+            Box(each.state.camera_from_cube, each.edge)
+            for each in step.players
+            if each.state.camera_from_cube is not None
+        )
         view = CameraView(
             step.frame.image,
             self._intrinsics.matrix,
             self._intrinsics.distortion,
             step.controls.camera_from_table,
-            () if box is None else (box,),
+            (*(() if box is None else (box,)), *others),
             focus=focus,
         )
         known = step.appearance

@@ -10,6 +10,7 @@ from cubeling.tracking import (
     CubeState,
     CubeTracker,
     Frame,
+    FrameMarkers,
     Intrinsics,
     LensEstimate,
     TrackingError,
@@ -40,14 +41,16 @@ class TrackedCube:
         self.error = ""
         """What the tracker's code raised in the last frame; "" for nothing."""
 
-    def track(self, frame: Frame) -> CubeState:
+    def track(self, frame: Frame, markers: FrameMarkers | None = None) -> CubeState:
         """Find the cube in a frame; frames come in the order of time.
+
+        Several cubes may share the `markers` of the frame.
 
         An error in the tracker's code costs this frame, and never the session.
         """
         self.error = ""
         try:
-            return self._tracker.update(frame)
+            return self._tracker.update(frame, markers)
         except TrackingError:  # such as a frame of another size: the next one has it, too
             raise
         except Exception as error:

@@ -78,7 +78,7 @@ class FrameLoop:
         )
         self._hidden = session.playground.step(frame, inputs, self._replay, drawn=False)
         if session.pace is None:  # else the robot lives in real time, and misses what is skipped
-            session.robot.feel(self._hidden.emotion)
+            self._feel(self._hidden)
         return self._hidden
 
     def preview(self) -> None:
@@ -109,7 +109,7 @@ class FrameLoop:
         self._hidden, self._shown_index = None, step.frame.index
         # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
         self.robot = view = session.robot.view()
-        session.robot.feel(step.emotion)
+        self._feel(step)
         if session.player is not None:
             session.player.publish(step.command, step.emotion)
         lap("robot")
@@ -134,6 +134,12 @@ class FrameLoop:
         self._summary.add(step, view, seconds, follows=follows)
         if self._quality is not None and seconds is not None:
             session.playground.quality = self._quality.update(seconds)
+
+    def _feel(self, step: Step) -> None:
+        """Let the robots of the players feel what their characters do."""
+        self._session.robot.feel(step.emotion)
+        if step.players:
+            self._session.second_robot.feel(step.others[0].emotion)
 
     def _take_start_over(self) -> bool:
         start_over, self._start_over = self._start_over, False

@@ -62,6 +62,9 @@ class OpenedSession:
     robot: RobotLine
     """The robot that shows the emotions, or a stand-in."""
 
+    second_robot: RobotLine
+    """The same for the second player; "none" without one."""
+
     wire: WireTap
     """Keeps the last bytes of the robot's line, for panels and recordings."""
 
@@ -168,9 +171,7 @@ class OpenedSession:
             self.screen.notify(f"{self.why_it_stays}: its settings do, too")
             return
         options = replace(self.options, **{setting: value})  # type: ignore[arg-type]
-        personality = None if options.personality is None else Personality.load(options.personality)
-        settings = ScenarioSettings(options.speed_map, options.turns, personality)
-        self.playground.adjust(settings, options.look)
+        self.playground.adjust(settings_of(options), options.look)
         self.options = options
         self.observe()
 
@@ -261,6 +262,12 @@ class OpenedSession:
         self.end_recording()
         if self.source is not self.first_source:
             self.source.close()
+
+
+def settings_of(options: SessionOptions) -> ScenarioSettings:
+    """Return the user's settings of a scenario; raises AppError or AffectError as reading them."""
+    personality = None if options.personality is None else Personality.load(options.personality)
+    return ScenarioSettings(options.speed_map, options.turns, personality)
 
 
 def scenario_of(options: SessionOptions, name: str, cube: CubeModel | None = None) -> Scenario:

@@ -14,11 +14,11 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.kept_lens import LensStore
-from cubeling.app.running.opened_session import OpenedSession, scenario_of
+from cubeling.app.running.opened_session import OpenedSession, scenario_of, settings_of
 from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.wire_tap import WireTap
-from cubeling.app.scenarios import scenario_cube
+from cubeling.app.scenarios import Scenario, scenario_cube
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
@@ -31,6 +31,7 @@ from cubeling.characters import (
     prepare_gestures,
 )
 from cubeling.tracking import (
+    SECOND,
     CubeModel,
     FrameSource,
     Intrinsics,
@@ -94,13 +95,17 @@ def open_session(
     check_output_paths(options)
     check_part(options)
     cubes = [CubeModel.load(each) for each in options.cubes]
-    cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
+    own = scenario_cube(options.scenario)
+    in_play = [*cubes, *map(CubeModel.load, (own, f"{own}{SECOND}")[len(cubes) :])]
+    cube, *further_cubes = in_play[: options.players]
+    if further_cubes and options.stage != "camera":
+        raise AppError("a session of several players is replayed from its camera: leave out --from")
     scenario = scenario_of(options, options.scenario, cube)
     character, *others = (
         load_to_play(
             name, own_motions_only=options.own_motions_only, whole_limbs=options.whole_limbs
         )
-        for name in (options.character or scenario.character, *options.others)
+        for name in names_of_cast(options, scenario)
     )
     if options.idle is not None:
         if options.controller != "tree":
@@ -133,6 +138,8 @@ def open_session(
             cube=cube,
             character=character,
             others=others,
+            further_cubes=further_cubes,
+            settings=settings_of(options),
             context=context,
             look=options.look,
             fixed=options.keeps_scenario or not options.windowed,
@@ -175,6 +182,11 @@ def open_session(
         robot = closing.enter_context(
             RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)
         )
+        second = closing.enter_context(
+            RobotLine.open(
+                options.second_robot, clock, None, options.robot_settings, stepped=stepped
+            )
+        )
         session = OpenedSession(
             asked=options,
             options=options,
@@ -184,6 +196,7 @@ def open_session(
             sound=sound,
             speaker=speaker,
             robot=robot,
+            second_robot=second,
             wire=wire,
             clock=clock,
             player=player,
@@ -200,6 +213,12 @@ def open_session(
         closing.callback(session.close)
         closing.callback(clock.release)  # the robot's connection is closed in real time
         yield session
+
+
+def names_of_cast(options: SessionOptions, scenario: Scenario) -> tuple[str, ...]:
+    """Return the names or files of all characters: at least one for each player."""
+    named = (options.character or scenario.character, *options.others)
+    return (*named, *[scenario.character] * (options.players - len(named)))
 
 
 def open_sound(

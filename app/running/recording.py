@@ -60,7 +60,8 @@ class SessionRecording(Closeable):
         self._last = 0.0
         self._marks = 0
         self._encode = frame_encoder(options.codec, source.size, source.rate)
-        named = replace(options, cubes=options.cubes or (playground.cube.name,))
+        own = tuple(each.cube.name for each in playground.players)
+        named = replace(options, cubes=(*options.cubes, *own[len(options.cubes) :]))
         self._recorder = Recorder(path, {**named.metadata(), "rate": f"{source.rate:g}"})
         self._live = source.live
         if not from_within:  # with the bytes before the first frame

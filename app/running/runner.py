@@ -59,6 +59,7 @@ def run(
         # A lost robot does not end the session and its link keeps retrying: report it at the end.
         try:
             session.robot.check()
+            session.second_robot.check()
         except RobotError as error:
             summary.lost = summary.lost or error
     except KeyboardInterrupt:

@@ -69,14 +69,21 @@ CAST_TYPES: dict[str, type[Any]] = {
 last part."""
 
 
+PLAYER_TYPES: dict[str, type[Any]] = {"state": CubeState, "controls": CubeControls}
+"""The same of each further player, whose channels are /cubes/NAME/PART."""
+
+
 def message_type(topic: str) -> type[Any] | None:
     """Return the type of the messages on a channel between camera and picture; None for others.
 
     >>> message_type("/cast/vleo/pose").__name__
     'PosedCharacter'
     """
-    if topic.startswith("/cast/") and topic.count("/") == 3:
-        return CAST_TYPES.get(topic.rpartition("/")[2])
+    folder, _, part = topic.rpartition("/")
+    if folder.startswith("/cast/"):
+        return CAST_TYPES.get(part)
+    if folder.startswith("/cubes/"):
+        return PLAYER_TYPES.get(part)
     return CHANNEL_TYPES.get(topic)
 
 

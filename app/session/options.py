@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Self
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.choices import REALISM_CHOICES
+from cubeling.app.pipeline.choices import REALISM_CHOICES, checked_players
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
 START_STAGES = ("camera", "state", "controls", "appearance", "command", "pose")
@@ -26,6 +26,9 @@ class SessionOptions:
     cubes: tuple[str, ...] = ()
     """Bundled cubes or .toml files: the one in play, then others that may come into view; () for
     the scenario's own."""
+
+    players: int = 1
+    """How many play, each with a cube: the first of `cubes`."""
 
     character: str | None = None
     """A bundled character or a .glb file; None for the scenario's own."""
@@ -88,6 +91,9 @@ class SessionOptions:
 
     robot: str = "sim"
     """URL of the robot, as `RobotLine.open` takes it."""
+
+    second_robot: str = "none"
+    """The same of the second player's."""
 
     robot_settings: Path | None = None
     """A .toml file for the robot's driver."""
@@ -162,10 +168,11 @@ class SessionOptions:
         """Whether the scenario stays.
 
         A recording holds one, and so does a replay of its stages; a controller and an idle motion
-        are prepared for the character of one.
+        are prepared for the character of one, and the cubes of several players for one.
         """
         own = self.controller == "tree" and self.idle is None
-        return self.record is not None or self.stage != "camera" or not own
+        several = self.players > 1
+        return self.record is not None or self.stage != "camera" or several or not own
 
     def metadata(self) -> dict[str, str]:
         """Return what a recording keeps of the settings: all that a replay needs."""
@@ -173,6 +180,8 @@ class SessionOptions:
         return {
             "scenario": self.scenario,
             "cube": self.cube or "",
+            "players": str(self.players),
+            "further_cubes": "\n".join(self.cubes[1 : self.players]),
             "character": self.character or "",
             "others": "\n".join(self.others),
             "controller": self.controller,
@@ -193,18 +202,22 @@ class SessionOptions:
     def from_metadata(cls, metadata: Mapping[str, str], source: str) -> Self:
         """Return the settings that `metadata` kept, to replay the recording `source`.
 
-        Raises ValueError if its `turns` is no number.
+        Raises ValueError if its `turns` or `players` is no number.
         """
-        turns = metadata.get("turns", "2")
-        try:
-            turn_gain = float(turns)
-        except ValueError:
-            raise ValueError(f"its 'turns' is {turns!r:.40}, which is no number") from None
+        numbers = {"turns": 2.0, "players": 1.0}
+        for name, usual in numbers.items():
+            try:
+                numbers[name] = float(metadata.get(name, usual))
+            except ValueError:
+                stated = metadata[name]
+                raise ValueError(f"its '{name}' is {stated!r:.40}, which is no number") from None
+        cube = metadata.get("cube")
         realism = metadata.get("realism", ",".join(REALISM_CHOICES))
         return cls(
             scenario=metadata["scenario"],
             source=source,
-            cubes=(metadata["cube"],) if metadata.get("cube") else (),
+            cubes=(*((cube,) if cube else ()), *metadata.get("further_cubes", "").splitlines()),
+            players=checked_players(numbers["players"]),
             character=metadata.get("character") or None,
             others=tuple(metadata.get("others", "").splitlines()),
             controller=metadata.get("controller", "tree"),
@@ -214,7 +227,7 @@ class SessionOptions:
             own_motions_only=metadata.get("own_motions_only", "yes") == "yes",
             whole_limbs=metadata.get("whole_limbs", "no") == "yes",
             speed_map=metadata.get("speed_map", "corrected"),
-            turns=turn_gain,
+            turns=numbers["turns"],
             personality=metadata.get("personality") or None,
             look=metadata.get("look", "auto"),
             inside=metadata.get("inside", "auto"),

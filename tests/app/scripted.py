@@ -11,7 +11,7 @@ from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import Progress, run
 from cubeling.app.session import SessionOptions
-from cubeling.tracking import CubeState, Frame
+from cubeling.tracking import CubeState, Frame, FrameMarkers
 from cubeling.tracking.synthetic import SyntheticSource, open_synthetic
 
 PICTURE_WIDTH, PICTURE_HEIGHT = 320, 180
@@ -60,7 +60,7 @@ def play_script(
     """Play a script, that of a bundled recording, with the true pose of the cube in every frame."""
     source = open_synthetic(f"{script or name}?rate={RATE:g}&size={PICTURE_WIDTH}x{PICTURE_HEIGHT}")
 
-    def track(_: TrackedCube, frame: Frame) -> CubeState:
+    def track(_: TrackedCube, frame: Frame, markers: FrameMarkers | None) -> CubeState:
         pose = source.truth(frame.index)
         still = np.zeros(6)
         return CubeState(True, pose, still, VARIANCE, "markers", (), 0.1, frame.timestamp)

@@ -21,7 +21,7 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.obstacles import Obstacles, view_of
-from cubeling.app.pipeline.table.situation import table_from_cube
+from cubeling.app.pipeline.table.situation import SeenCube
 from cubeling.app.session import messages
 from cubeling.app.session.bundled import bundled_session
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
@@ -144,7 +144,7 @@ def _frames(states: list[CubeState], ahead: float) -> Iterator[tuple[Array, Arra
             velocity, acceleration = track.motion(pose, state.covariance, state.timestamp)
             past = TrackedPose(pose, velocity, state.covariance, state.timestamp, acceleration)
             track = track.add(past)
-        controls = playground.gesture(state)
+        controls = playground.players[0].gesture(state)
         expected = track.predict(state.timestamp + ahead)
         if controls.camera_from_table is None or expected is None or pose is None:
             continue
@@ -152,9 +152,10 @@ def _frames(states: list[CubeState], ahead: float) -> Iterator[tuple[Array, Arra
         soon = replace(controls, position=(table @ expected.camera_from_cube)[[0, 2], 3])
         predicted = replace(state, camera_from_cube=expected.camera_from_cube)
         cast, inputs = playground.cast, Inputs()
-        decisions = cast.decide(soon, table_from_cube(predicted, soon), inputs)
+        seen = [SeenCube(predicted, soon)]
+        decisions = cast.decide(seen, inputs)
         things, view = obstacles.update(predicted, soon), view_of(soon, playground.sight.lens)
-        cast.perform(predicted, soon, decisions, inputs, things, view, ReplayInputs())
+        cast.perform(seen, decisions, inputs, things, view, ReplayInputs())
         posed = cast.lead.posed
         assert posed is not None
         placed = posed.table_from_character @ posed.pose.globals(skeleton)[eye]

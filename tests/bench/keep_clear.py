@@ -84,7 +84,7 @@ class Unaware(Playground):
     def play(self, *given: object, **named: object) -> None:
         """Start a scenario without obstacles."""
         super().play(*given, **named)  # type: ignore[arg-type]
-        self._obstacles = _NoObstacles(self.cube.edge)
+        self.players[0].obstacles = _NoObstacles(self.cube.edge)
 
 
 class Surface:

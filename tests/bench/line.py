@@ -28,7 +28,7 @@ from cubeling.app.pipeline.choices import REALISM_CHOICES, realism_of
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
-from cubeling.app.pipeline.table.situation import table_from_cube
+from cubeling.app.pipeline.table.situation import SeenCube
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.app.sound import Mixer, SessionSound, SoundBank
@@ -92,10 +92,9 @@ def measure(
             playground.expect(frame)
             state = playground.tracked.track(frame)
             marks.append(time.perf_counter())
-            controls = playground.gesture(state)
+            controls = playground.players[0].gesture(state)
             cast = playground.cast
-            seen = table_from_cube(state, controls)
-            outcome = cast.decide(controls, seen, Inputs())[0]
+            outcome = cast.decide([SeenCube(state, controls)], Inputs())[0]
             marks.append(time.perf_counter())
             posed = cast.lead.perform(outcome.command).posed
             marks.append(time.perf_counter())

@@ -134,7 +134,7 @@ def play_virtually(hours: float, folder: Path) -> LongPlay:
         pytest.MonkeyPatch.context() as patch,
         open_session(options, source=source) as session,
     ):
-        patch.setattr(TrackedCube, "track", lambda _, frame: source.track(frame))
+        patch.setattr(TrackedCube, "track", lambda _, frame, markers: source.track(frame))
         run(session, measure).check()
         if session.speaker.problem:
             played.wrong.append(session.speaker.problem)

@@ -121,7 +121,8 @@ class CubeModel:
         Parameters
         ----------
         name_or_path
-            "locomotion", "companion", or the path of a TOML file.
+            "locomotion", "companion", or the path of a TOML file. "locomotion-2" is the same cube
+            for a second player, with markers of its own.
 
         Raises
         ------
@@ -129,14 +130,20 @@ class CubeModel:
             The file is missing, is not TOML, or does not describe a printable cube.
         """
         path = Path(name_or_path)
-        if path.suffix != ".toml":
-            path = CUBES_FOLDER / f"{name_or_path}.toml"
-            if not is_there(path):
-                known = ", ".join(bundled_cubes())
-                raise TrackingError(
-                    f"no cube is called '{name_or_path}': choose {known}, or give a .toml file"
-                )
-        return cls.from_document(read(path, CUBE_FILE), str(path), path.stem)
+        if path.suffix == ".toml":
+            return cls.from_document(read(path, CUBE_FILE), str(path), path.stem)
+        name = str(name_or_path).removesuffix(SECOND)
+        path = CUBES_FOLDER / f"{name}.toml"
+        if not is_there(path):
+            known = ", ".join(bundled_cubes())
+            raise TrackingError(
+                f"no cube is called '{name_or_path}': choose {known}, or give a .toml file"
+            )
+        cube = cls.from_document(read(path, CUBE_FILE), str(path), name)
+        if name == str(name_or_path):
+            return cube
+        faces = (replace(each, marker_id=each.marker_id + SECOND_IDS) for each in cube.faces)
+        return replace(cube, name=f"{name}{SECOND}", faces=tuple(faces))
 
     @classmethod
     def from_document(cls, document: dict[str, Any], where: str, name: str) -> Self:
@@ -282,6 +289,10 @@ WHITE_CELLS = 1.5
 
 BORDER_CELLS = 1.0
 """White border around the marker of a side that has no outline [cells]."""
+
+SECOND, SECOND_IDS = "-2", 24
+"""What the name of a second player's bundled cube ends with, and by how much its marker ids are
+larger: so all bundled cubes differ, and all ids are in their dictionary."""
 
 CUBES_FOLDER = Path(__file__).parents[1] / "cubes"
 

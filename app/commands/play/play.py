@@ -42,11 +42,12 @@ from cubeling.app.commands.play.play_options import (
     PatienceOption,
     PersonalityOption,
     PicturesOption,
+    PlayersOption,
     QualityOption,
     RealismOption,
     RecordOption,
-    RobotOption,
     RobotSettingsOption,
+    RobotsOption,
     ScenarioArgument,
     SoundsOption,
     SourceOption,
@@ -56,8 +57,10 @@ from cubeling.app.commands.play.preference_options import GivenPreferences, with
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import (
     cast_of,
+    checked_players,
     inside_of,
     realism_of,
+    robots_of,
 )
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario
@@ -73,13 +76,14 @@ def play(
     cubes: CubesOption = None,
     character: CharacterOption = None,
     cast: CastOption = None,
+    players: PlayersOption = 1,
     controller: ControllerOption = "tree",
     motions: MotionsOption = None,
     idle: IdleOption = None,
     own_motions_only: OwnMotionsOption = False,
     intrinsics: IntrinsicsOption = None,
     patience: PatienceOption = 30.0,
-    robot: RobotOption = "sim",
+    robots: RobotsOption = None,
     record: RecordOption = None,
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
@@ -139,12 +143,14 @@ def play(
 
     record_codec, video_codec = codecs_of(codec, record, output)
     character, others = cast_of(cast, character)
+    robot, second_robot = robots_of(robots or (), players)
     options = SessionOptions(
         scenario=scenario,
         source=source,
         cubes=tuple(cubes or ()),
         character=character,
         others=others,
+        players=checked_players(players),
         controller=controller,
         motions=tuple(motions or ()),
         idle=idle,
@@ -163,6 +169,7 @@ def play(
         inside=inside_of(inside),
         quality=checked_quality(quality),
         robot=robot,
+        second_robot=second_robot,
         robot_settings=robot_settings,
         record=record,
         codec=record_codec,

@@ -62,6 +62,14 @@ CubesOption = Annotated[
 CharacterOption = Annotated[
     str | None, typer.Option(help="A bundled character, or a .glb, .gltf or .vrm file.")
 ]
+PlayersOption = Annotated[
+    int,
+    typer.Option(
+        help="How many play at once, each with a cube and a character: 1 or 2. The second one's "
+        "cube is printed by: cubeling cube locomotion-2, or companion-2.",
+        rich_help_panel=CHARACTER_GROUP,
+    ),
+]
 CastOption = Annotated[
     str | None,
     typer.Option(
@@ -155,6 +163,17 @@ RobotOption = Annotated[
         "-r",
         help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT. Other protocols than "
         "ours have a prefix: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo.",
+    ),
+]
+RobotsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--robot",
+        "-r",
+        metavar="<str>",
+        help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT. Other protocols than "
+        "ours have a prefix: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo. With --players 2, repeat "
+        "it for the second player's.",
     ),
 ]
 RobotSettingsOption = Annotated[

@@ -3,15 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.scenario import Inputs, Outcome
 from cubeling.app.pipeline.step import Performance, ReplayInputs
 from cubeling.app.pipeline.table.attention import ALONE, Company
+from cubeling.app.pipeline.table.situation import SeenCube
 from cubeling.characters import CharacterCommand, Obstacle, TableView
-from cubeling.tracking import CubeControls, CubeState
 
 
 class Cast:
@@ -29,19 +26,16 @@ class Cast:
         """The member that the cube leads."""
         return self.members[0]
 
-    def decide(
-        self, controls: CubeControls, cube: NDArray[np.float64] | None, inputs: Inputs
-    ) -> list[Outcome]:
-        """Let each scenario decide; `cube` is `table_from_cube`, None where it is not seen."""
+    def decide(self, seen: Sequence[SeenCube], inputs: Inputs) -> list[Outcome]:
+        """Let each scenario decide; `seen` are the cubes of the players."""
         return [
-            member.decide(controls, cube, told)
+            member.decide(self._cube_of(member, seen), told)
             for member, told in zip(self.members, self._told(inputs), strict=True)
         ]
 
     def perform(
         self,
-        state: CubeState,
-        controls: CubeControls,
+        seen: Sequence[SeenCube],
         decisions: Sequence[Outcome],
         inputs: Inputs,
         things: tuple[Obstacle, ...],
@@ -57,8 +51,7 @@ class Cast:
         for number, (member, told) in enumerate(zip(self.members, self._told(inputs), strict=True)):
             beside = () if len(self.members) == 1 else self._bodies(number)
             command = member.command(
-                state,
-                controls,
+                self._cube_of(member, seen),
                 decisions[number],
                 told,
                 (*things, *beside),
@@ -81,6 +74,9 @@ class Cast:
             member.performance(command, decision)
             for member, command, decision in zip(self.members, commands, decisions, strict=True)
         )[1:]
+
+    def _cube_of(self, member: CastMember, seen: Sequence[SeenCube]) -> SeenCube:
+        return seen[member.player]
 
     def _bodies(self, number: int) -> tuple[Obstacle, ...]:
         """Return the others as they are in the way of one of the members."""

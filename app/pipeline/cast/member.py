@@ -15,7 +15,7 @@ from cubeling.app.pipeline.scenario_errors import check_outcome, scenario_errors
 from cubeling.app.pipeline.step import Performance
 from cubeling.app.pipeline.table.attention import ALONE, Attention, Company
 from cubeling.app.pipeline.table.props import BodyParts, PosedBody
-from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.pipeline.table.situation import SeenCube, Situation, table_from_cube
 from cubeling.app.pipeline.table.spoken_line import Speaking
 from cubeling.characters import (
     Animator,
@@ -24,11 +24,11 @@ from cubeling.characters import (
     ControllerFactory,
     Obstacle,
     PosedCharacter,
+    RootDelta,
     TableView,
     first_suitable,
 )
 from cubeling.characters.speech import Complexion
-from cubeling.tracking import CubeControls, CubeState
 
 MAX_SPEED_M_S = 2.0
 """A body that is somewhere else at a greater speed was put there [m/s]: it does not come nearer."""
@@ -47,6 +47,10 @@ class CastMember:
         Decides what it does, and where it stands at first.
     attention
         Chooses what it looks at.
+    player
+        The number of the player whose cube leads it, or whom it watches.
+    place
+        Where it stands at first; None for the scenario's own place.
     seed
         Of its blinks, sway and idle motion.
     controller
@@ -67,12 +71,16 @@ class CastMember:
         scenario: Scenario,
         attention: Attention,
         *,
+        player: int = 0,
+        place: RootDelta | None = None,
         seed: int = 0,
         controller: ControllerFactory = first_suitable,
     ) -> None:
         self.name, self.scenario, self.attention = name, scenario, attention
-        self._seed = seed
-        self._take(character, Animator(character, None, scenario.start, seed, None, controller))
+        self.player = player
+        """The number of the player whose cube leads it, or whom it watches."""
+        place = place or scenario.start
+        self._take(character, Animator(character, None, place, seed, None, controller))
         self.posed: PosedCharacter | None = None
         """The character as after the previous frame; None before the first."""
         self.body: PosedBody | None = None
@@ -96,11 +104,10 @@ class CastMember:
         self._take(character, animator)
         self.body = None
 
-    def decide(
-        self, controls: CubeControls, cube: NDArray[np.float64] | None, inputs: Inputs
-    ) -> Outcome:
-        """Let its scenario decide; `cube` is `table_from_cube`, None where it is not seen."""
-        animator = self._animator
+    def decide(self, seen: SeenCube, inputs: Inputs) -> Outcome:
+        """Let its scenario decide."""
+        animator, controls = self._animator, seen.controls
+        cube = table_from_cube(seen.state, controls)
         situation = Situation(
             self.posed, self.body, animator.actions, animator.walks, animator.length, cube
         )
@@ -110,8 +117,7 @@ class CastMember:
 
     def command(
         self,
-        state: CubeState,
-        controls: CubeControls,
+        seen: SeenCube,
         decision: Outcome,
         inputs: Inputs,
         obstacles: tuple[Obstacle, ...],
@@ -127,7 +133,7 @@ class CastMember:
             command,
             obstacles=obstacles,
             view=view,
-            gaze=self.attention.update(state, controls, command, company),
+            gaze=self.attention.update(seen.state, seen.controls, command, company),
             emotion=decision.emotion.emotion,
             speech=self.speaking.update(inputs.line, command, silence=inputs.clear),
         )

@@ -33,6 +33,17 @@ class Situation:
     """`table_from_cube`, (4, 4) [m]; None where the cube is not seen."""
 
 
+@dataclass(frozen=True)
+class SeenCube:
+    """The cube of a player in a frame."""
+
+    state: CubeState
+    """Its pose in the camera frame, if it is seen."""
+
+    controls: CubeControls
+    """What the hand does with it."""
+
+
 def table_from_cube(state: CubeState, controls: CubeControls) -> NDArray[np.float64] | None:
     """Return where a cube that is seen is on the table, (4, 4) [m]."""
     table, cube = controls.camera_from_table, state.camera_from_cube

@@ -146,10 +146,10 @@ def test_a_player_who_started_over_in_a_frame_that_is_not_drawn_did_so_in_it(
     cleared = []
     decide = Cast.decide
 
-    def note(self, controls, cube, inputs):
+    def note(self, seen, inputs):
         if inputs.clear:
-            cleared.append(controls.timestamp)
-        return decide(self, controls, cube, inputs)
+            cleared.append(seen[0].controls.timestamp)
+        return decide(self, seen, inputs)
 
     monkeypatch.setattr(Cast, "decide", note)
     play_slowly()

@@ -27,7 +27,7 @@ def whole_turn():
     with open_synthetic(f"turn?{SMALL}") as source:
         playground = Playground("follow", intrinsics_for(source.intrinsics, source.size))
         return [
-            (playground.gesture(playground.tracked.track(frame)), frame.timestamp)
+            (playground.players[0].gesture(playground.tracked.track(frame)), frame.timestamp)
             for frame in source
         ]
 

@@ -1,12 +1,10 @@
 """Several characters on the table: names, places, glances, and room for one another."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.cast.waiting_members import PLACES, cast_names
+from cubeling.app.pipeline.cast.further_members import PLACES, distinct_names
 from cubeling.app.pipeline.choices import MAX_CAST, cast_of
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs
@@ -58,10 +56,8 @@ def test_a_cast_that_is_none_is_refused(text, character):
         cast_of(text, character)
 
 
-def test_each_name_of_a_cast_is_there_once_and_fits_into_a_topic():
-    human = Character.load("human")
-    odd = [replace(human, name=name) for name in ("human", "human", "Zoë / 1", "human", "??")]
-    names = cast_names(odd)
+def test_each_name_is_there_once_and_fits_into_a_topic():
+    names = distinct_names(["human", "human", "Zoë / 1", "human", "??"])
     assert names == ("human", "human_2", "Zoë-1", "human_3", "-")
 
 

@@ -1,0 +1,70 @@
+"""The members of a cast after the first: their names, places and seeds."""
+
+import math
+import re
+import zlib
+from collections.abc import Iterable, Sequence
+
+from cubeling.app.pipeline.cast.member import CastMember
+from cubeling.app.pipeline.registry import WAITING
+from cubeling.app.pipeline.scenario import Scenario
+from cubeling.app.pipeline.table.attention import Attention
+from cubeling.characters import Character, RootDelta
+
+PLACES = ((0.17, -0.03), (0.05, -0.19), (-0.13, -0.20), (0.25, -0.18))
+"""Where they stand at first, (x, z) on the table [m]: beside and behind the cube, so that each is
+seen and the scenarios' own character, on the left, has its way."""
+
+PLAYER_Z_M = 0.6
+"""How far away the point is that they face at first, towards the player [m]."""
+
+
+def distinct_names(names: Iterable[str]) -> tuple[str, ...]:
+    """Return names of a cast, or of players, with a number where two are the same.
+
+    A name is a part of a channel's, so it has only letters, digits, "-" and "_".
+
+    >>> distinct_names(["vleo", "my cube", "vleo"])
+    ('vleo', 'my-cube', 'vleo_2')
+    """
+    found: list[str] = []
+    for name in names:
+        plain = re.sub(r"[^\w-]+", "-", name) or "unnamed"
+        same = sum(1 for each in found if plain in (each, each.rpartition("_")[0]))
+        found.append(f"{plain}_{same + 1}" if same else plain)
+    return tuple(found)
+
+
+def further_members(
+    names: Sequence[str],
+    characters: Sequence[Character],
+    led: Sequence[Scenario],
+    look: str,
+    edges: Sequence[float],
+) -> list[CastMember]:
+    """Return the members of a cast after the first.
+
+    Parameters
+    ----------
+    names, characters
+        Theirs, at most four.
+    led
+        What the further players play, each with one of the characters; the rest watches the first.
+    look
+        What they look at: one of `LOOK_CHOICES`.
+    edges
+        Those of the cubes of all players [m].
+    """
+    waiting = WAITING["waiting"]
+    members = []
+    for number, (name, character) in enumerate(zip(names, characters, strict=True)):
+        seed = zlib.crc32(name.encode())
+        x, z = PLACES[number]
+        place = RootDelta(x, z, math.atan2(-x, PLAYER_Z_M - z))
+        player = number + 1 if number < len(led) else 0
+        scenario = led[number] if player else waiting(place, number + 1)
+        attention = Attention(look, edges[player], seed)
+        members.append(
+            CastMember(name, character, scenario, attention, player=player, place=place, seed=seed)
+        )
+    return members

@@ -1,0 +1,83 @@
+"""A person with a cube: where it is, what the hand does with it, and what is in the way."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.step import Played
+from cubeling.app.pipeline.table.obstacles import Obstacles
+from cubeling.app.pipeline.tracked_cube import TrackedCube
+from cubeling.tracking import (
+    CubeControls,
+    CubeGestures,
+    CubeModel,
+    CubeState,
+    Frame,
+    FrameMarkers,
+    Intrinsics,
+)
+
+
+class Player:
+    """A player with a cube. It changes from frame to frame, and a checkpoint copies it.
+
+    Parameters
+    ----------
+    name
+        Its name among the players.
+    cube, intrinsics, known_cubes
+        See `TrackedCube`.
+    """
+
+    def __init__(
+        self, name: str, cube: CubeModel, intrinsics: Intrinsics, known_cubes: Sequence[CubeModel]
+    ) -> None:
+        self.name, self.cube = name, cube
+        self.tracked = TrackedCube(cube, intrinsics, known_cubes)
+        """The cube in view, and what it has told of the camera."""
+        self.obstacles = Obstacles(cube.edge)
+        """What is in the way of the characters."""
+        self._gestures = CubeGestures(cube)
+
+    def gesture(self, state: CubeState) -> CubeControls:
+        """Compute what the hand does with the cube."""
+        return self._gestures.update(state)
+
+    def play(self, frame: Frame, markers: FrameMarkers, first: CubeControls) -> Played:
+        """Find the cube, and tell what the hand does with it on the table of the `first` player."""
+        state = self.tracked.track(frame, markers)
+        controls = on_table_of(first, self.gesture(state), state)
+        return Played(self.name, state, controls, self.cube.edge)
+
+
+def on_table_of(first: CubeControls, controls: CubeControls, state: CubeState) -> CubeControls:
+    """Return a player's controls on the table of the first player, which all characters share.
+
+    Where that is not known yet, the cube has no place on it.
+    """
+    table, pose = first.camera_from_table, state.camera_from_cube
+    if table is None or controls.camera_from_table is None:
+        return replace(controls, camera_from_table=table, position=None)
+    if pose is None:
+        return replace(controls, camera_from_table=table)
+    place = np.linalg.inv(table) @ pose[:, 3]
+    return replace(controls, camera_from_table=table, position=np.asarray(place[[0, 2]], float))
+
+
+def check_players(cubes: Sequence[CubeModel]) -> None:
+    """Refuse cubes of several players that share a marker.
+
+    Raises
+    ------
+    AppError
+        With what to print instead.
+    """
+    for number, cube in enumerate(cubes):
+        for before in cubes[:number]:
+            if cube.markers & before.markers:
+                raise AppError(
+                    f"the cubes '{before.name}' and '{cube.name}' share markers: the second player "
+                    "needs others, such as those of: cubeling cube locomotion-2 (or companion-2)"
+                )

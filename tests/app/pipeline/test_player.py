@@ -1,0 +1,152 @@
+"""Two players with a cube each: two cubes, two characters, two robots on one table."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import checked_players, robots_of
+from cubeling.app.pipeline.player import check_players, on_table_of
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionOptions, session_info
+from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics, se3
+from tests.app import session_parts
+from tests.app.scripted import Blank
+from tests.bench.keep_clear import TABLE
+from tests.tracking.drawn import photograph, scene
+
+CAMERA = Intrinsics(
+    np.array([[450.0, 0, 319.5], [0, 450.0, 179.5], [0, 0, 1]]), np.zeros(5), (640, 360)
+)
+FRAMES = 30
+
+
+class TwoCubes(Blank):
+    """Drawn pictures of two cubes that rest on a table; the second one is then slid."""
+
+    def __init__(self):
+        self.intrinsics, self.size, self.rate = CAMERA, CAMERA.size, 30.0
+        self.count, self.duration = FRAMES, FRAMES / 30.0
+        self.cubes = CubeModel.load("locomotion"), CubeModel.load("locomotion-2")
+        self.still = np.empty(0)
+
+    def __iter__(self):
+        for index in range(self.count):
+            slid = 0.002 * max(index - 14, 0)
+            if slid or not len(self.still):
+                poses = [self.pose(-0.05, 0.0, 3.0), self.pose(0.12, 0.04 - slid, 2.8)]
+                pairs = zip(self.cubes, poses, strict=True)
+                self.still = photograph(scene(*pairs, camera=CAMERA))
+            yield Frame(self.still, round(index / self.rate, 9), index)
+
+    def pose(self, x, z, yaw):
+        """Return `camera_from_cube` of a cube that stands on the table."""
+        placed = np.eye(4)
+        placed[:3, :3] = se3.rotation(np.array([0.0, yaw, 0.0]))
+        placed[:3, 3] = x, 0.03, z
+        return TABLE @ placed
+
+
+@pytest.fixture(scope="module")
+def played(tmp_path_factory):
+    """A recorded session of two players, its options and its steps."""
+    path = tmp_path_factory.mktemp("two") / "two.mcap"
+    options = SessionOptions(
+        scenario="follow",
+        source="two cubes",
+        players=2,
+        others=("human", "vleo"),
+        robot="sim:pleo",
+        second_robot="sim:pleo",
+        record=path,
+        pictures=False,
+    )
+    steps = []
+    with open_session(options, source=TwoCubes()) as session:
+        run(session, steps.append)
+        robots = session.robot.view(), session.second_robot.view()
+    return path, steps, robots
+
+
+def test_both_cubes_are_tracked_and_share_one_table(played):
+    _, steps, _ = played
+    last = steps[-1]
+    (second,) = last.players
+    assert last.state.visible
+    assert second.state.visible
+    assert second.name == "locomotion-2"
+    assert np.array_equal(second.controls.camera_from_table, last.controls.camera_from_table)
+    apart = second.state.camera_from_cube[:3, 3] - last.state.camera_from_cube[:3, 3]
+    assert second.controls.position is not None
+    moved = second.controls.position - last.controls.position
+    assert np.linalg.norm(moved) == pytest.approx(np.linalg.norm(apart), abs=0.002)
+
+
+def test_each_cube_leads_its_own_character(played):
+    _, steps, _ = played
+    last = steps[-1]
+    assert [each.name for each in last.others] == ["human_2", "vleo"]
+    targets = [each.command.locomotion.target for each in (last, *last.others[:1])]
+    assert np.linalg.norm(targets[0] - targets[1]) > 0.05
+    assert last.others[1].command.activity == "idle", "nobody leads the third"
+
+
+def test_a_cube_keeps_everybody_out(played):
+    """Two cubes, the arms that slid them, and the two others are in the way of the first."""
+    _, steps, _ = played
+    assert sum(not each.alive for each in steps[-1].command.obstacles) >= 2
+    assert sum(each.alive for each in steps[-1].command.obstacles) == 2
+
+
+def test_both_robots_feel(played):
+    _, _, robots = played
+    assert all(view.link == "ready" for view in robots)
+
+
+@pytest.mark.slow(reason="a session of two cubes is processed again")
+def test_a_session_of_two_players_is_replayed_with_no_difference(played):
+    path, steps, _ = played
+    options = session_info(path).options
+    assert options.players == 2
+    assert options.cubes == ("locomotion", "locomotion-2")
+    result = session_parts.check(path, options)
+    assert result.identical
+    assert result.counts["/cubes/locomotion-2/state"] == len(steps)
+    with (
+        pytest.raises(AppError, match="several players"),
+        open_session(replace(options, stage="state", pictures=False, robot="none")),
+    ):
+        pass
+
+
+def test_cubes_that_share_a_marker_are_refused():
+    cube = CubeModel.load("locomotion")
+    with pytest.raises(AppError, match="cubeling cube locomotion-2"):
+        check_players([cube, cube])
+    check_players([cube, *map(CubeModel.load, ("locomotion-2", "companion", "companion-2"))])
+
+
+def test_a_lost_cube_has_no_place_of_its_own(hand):
+    first = hand.frame(camera_from_table=TABLE)
+    lost = CubeState(
+        False, None, np.full(6, np.nan), np.full((6, 6), np.nan), "markers", (), 0.1, 1.0
+    )
+    moved = on_table_of(first, replace(first, visible=False), lost)
+    assert moved.camera_from_table is first.camera_from_table
+    unknown = on_table_of(first, replace(first, camera_from_table=None), lost)
+    assert unknown.position is None
+
+
+@pytest.mark.parametrize("number", [0, 3, 1.5])
+def test_one_or_two_can_play(number):
+    with pytest.raises(AppError, match="can play at once"):
+        checked_players(number)
+
+
+def test_each_player_has_one_robot():
+    assert robots_of((), 1) == ("sim", "none")
+    assert robots_of(("none", "sim:pleo"), 2) == ("none", "sim:pleo")
+    with pytest.raises(AppError, match="--players 2"):
+        robots_of(("sim", "sim"), 1)
