@@ -8,6 +8,7 @@ import pytest
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import checked_players, robots_of
 from cubeling.app.pipeline.player import check_players, on_table_of
+from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, session_info
@@ -30,16 +31,16 @@ class TwoCubes(Blank):
         self.intrinsics, self.size, self.rate = CAMERA, CAMERA.size, 30.0
         self.count, self.duration = FRAMES, FRAMES / 30.0
         self.cubes = CubeModel.load("locomotion"), CubeModel.load("locomotion-2")
-        self.still = np.empty(0)
 
     def __iter__(self):
+        picture = None
         for index in range(self.count):
             slid = 0.002 * max(index - 14, 0)
-            if slid or not len(self.still):
+            if slid or picture is None:
                 poses = [self.pose(-0.05, 0.0, 3.0), self.pose(0.12, 0.04 - slid, 2.8)]
                 pairs = zip(self.cubes, poses, strict=True)
-                self.still = photograph(scene(*pairs, camera=CAMERA))
-            yield Frame(self.still, round(index / self.rate, 9), index)
+                picture = photograph(scene(*pairs, camera=CAMERA))
+            yield Frame(picture, round(index / self.rate, 9), index)
 
     def pose(self, x, z, yaw):
         """Return `camera_from_cube` of a cube that stands on the table."""
@@ -63,7 +64,7 @@ def played(tmp_path_factory):
         record=path,
         pictures=False,
     )
-    steps = []
+    steps: list[Step] = []
     with open_session(options, source=TwoCubes()) as session:
         run(session, steps.append)
         robots = session.robot.view(), session.second_robot.view()
