@@ -64,13 +64,12 @@ class Clip:
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]; with root motion, the root is at the origin."""
         frame, u = self.position(time)
-        after = min(frame + 1, self._last)
-        before = self._table[frame]
+        before, after = self._table[frame], self._table[min(frame + 1, self._last)]
         # The signs are continuous, so linear interpolation goes the shorter way.
-        pose = self._parts(before + (self._table[after] - before) * u)
-        return Pose(
-            pose.translations, rotations.normalize(pose.rotations), pose.scales, pose.morphs
-        )
+        row = before + (after - before) * u
+        turns = row[: 4 * self.poses.rotations.shape[1]].reshape(-1, 4)
+        turns[:] = rotations.normalize(turns)
+        return self._parts(row)
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s], across loops."""

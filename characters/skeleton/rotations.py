@@ -50,14 +50,11 @@ def _matrix_table() -> Array:
 _PAIRS = np.triu_indices(4)
 """Numbers of the components in the ten different products of two components of one quaternion."""
 
+_FACTORS = np.repeat(np.arange(4), 4), np.tile(np.arange(4), 4)
+"""Numbers of the components in the sixteen products of components of two quaternions."""
+
 _PRODUCT_TABLE = _multiplication_table()
 _MATRIX_TABLE = _matrix_table()
-
-
-def _outer(a: Array, b: Array) -> Array:
-    """Return the outer products of the last axes, flattened, (…, 16)."""
-    products: Array = a[..., :, None] * b[..., None, :]
-    return products.reshape((*products.shape[:-2], 16))
 
 
 def multiply(a: ArrayLike, b: ArrayLike) -> Array:
@@ -67,7 +64,9 @@ def multiply(a: ArrayLike, b: ArrayLike) -> Array:
     >>> np.allclose(multiply(quarter, quarter), about("y", np.pi))
     True
     """
-    product: Array = _outer(np.asarray(a, float), np.asarray(b, float)) @ _PRODUCT_TABLE
+    left, right = _FACTORS
+    products = np.asarray(a, float).take(left, -1) * np.asarray(b, float).take(right, -1)
+    product: Array = products @ _PRODUCT_TABLE
     return product
 
 
@@ -92,8 +91,8 @@ def normalize(q: ArrayLike) -> Array:
     ([0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0])
     """
     q = np.asarray(q, float)
-    squared = np.einsum("...i,...i->...", q, q)[..., None]
-    if squared.size and squared.min() < 1e-24:
+    squared = np.vecdot(q, q)[..., None]
+    if squared.min(initial=1.0) < 1e-24:
         return np.where(squared < 1e-24, IDENTITY, q / np.sqrt(np.maximum(squared, 1e-24)))
     unit: Array = q / np.sqrt(squared)
     return unit
@@ -187,11 +186,12 @@ def from_rotation_vector(vector: ArrayLike) -> Array:
     True
     """
     vector = np.asarray(vector, float)
-    half = np.sqrt(np.vecdot(vector, vector))[..., None] / 2
+    halves = 0.5 * vector
+    half = np.sqrt(np.vecdot(halves, halves))[..., None]
     # Near zero the sine equals its angle to the last bit.
     safe = np.maximum(half, 1e-9)
     q = np.empty((*vector.shape[:-1], 4))
-    np.multiply(vector, np.sin(safe) / (2 * safe), out=q[..., :3])
+    np.multiply(halves, np.sin(safe) / safe, out=q[..., :3])
     np.cos(half, out=q[..., 3:])
     return q
 
@@ -258,7 +258,7 @@ def align(q: ArrayLike, reference: ArrayLike) -> Array:
     [-0.0, -0.0, -0.0, 1.0]
     """
     q = np.asarray(q, float)
-    dots = np.einsum("...i,...i->...", q, np.asarray(reference, float))[..., None]
+    dots = np.vecdot(q, np.asarray(reference, float))[..., None]
     return np.where(dots < 0, -q, q)
 
 
@@ -268,9 +268,10 @@ def nlerp(a: ArrayLike, b: ArrayLike, u: ArrayLike) -> Array:
     >>> np.allclose(nlerp(IDENTITY, about("y", 0.4), 0.5), about("y", 0.2))
     True
     """
-    a = np.asarray(a, float)
-    weight = np.asarray(u, float)[..., None]
-    return normalize(a + (align(b, a) - a) * weight)
+    a, b, u = np.asarray(a, float), np.asarray(b, float), np.asarray(u, float)
+    # −b is the same rotation as b, and may be nearer to a.
+    signed = u * np.copysign(1.0, np.vecdot(a, b))
+    return normalize(a * (1.0 - u)[..., None] + b * signed[..., None])
 
 
 def slerp(a: ArrayLike, b: ArrayLike, u: ArrayLike) -> Array:

@@ -177,7 +177,7 @@ class ClipBank:
             self._mix_sign_ambiguous(np.array([rows]), share[None], mixed[None])
         rotation_end, translation_end, scale_end, morph_end = self.column_ends
         turns = mixed[:rotation_end].reshape(-1, 4)
-        turns = turns / np.sqrt(np.einsum("ji,ji->j", turns, turns))[:, None]
+        turns = turns / np.sqrt(np.vecdot(turns, turns))[:, None]
         translations, scales = self.constant.translations.copy(), self.constant.scales
         translations[self.moving] = mixed[rotation_end:translation_end].reshape(-1, 3)
         if scales is not None:
