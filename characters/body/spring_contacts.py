@@ -26,6 +26,9 @@ class Contacts:
     reach: Array
     """The least distance of the tail to the axis of the collider, (n, turns) [m]."""
 
+    squared_reach: Array
+    """Its square, 0 of a pair that does not exist, (n, turns) [m²]."""
+
     are_spheres: bool
     """Whether all colliders are spheres."""
 
@@ -44,32 +47,39 @@ class Contacts:
                 colliders[row, turn] = shapes.index(shape)
                 reach[row, turn] = bone.radius + shape.radius
         are_spheres = all(shape.start == shape.end for shape in shapes)
-        return Contacts(np.array(own, np.intp), colliders, reach, are_spheres)
+        squares = np.maximum(reach, 0.0) ** 2
+        return Contacts(np.array(own, np.intp), colliders, reach, squares, are_spheres)
 
-    def push_out(self, ways: Array, origins: Array, lengths: Array, ends: Array) -> None:
-        """Change the ways from joints to tails, (bones, 3), so that the tails leave colliders.
+    def push_out(self, tails: Array, origins: Array, lengths: Array, ends: Array) -> None:
+        """Change tails of bones, (bones, 3), so that they leave colliders.
 
         `ends` are both ends of the axes of all colliders, (colliders, 2, 3). Each tail leaves its
-        colliders in turn, and is put back to its distance from the joint each time.
+        colliders in turn, and is put back to its distance from the joint, `origins`, each time.
         """
-        own, lengths = ways.take(self.bones, 0), lengths.take(self.bones, 0)
-        origins = origins.take(self.bones, 0)
+        own = tails.take(self.bones, 0)
+        away, squares = self._from_axes(own, ends, 0)
+        if (squares >= self.squared_reach).all():
+            return
+        lengths, origins = lengths.take(self.bones, 0), origins.take(self.bones, 0)
         turn, turns = 0, self.reach.shape[1]
-        while turn < turns:
-            away, distances = self._from_axes(origins + own, ends, turn)
+        while True:
+            distances = np.sqrt(squares)
             depths = self.reach[:, turn:] - distances
             if depths.max() <= 0.0:
                 break
             # The first turn in which a tail is in a collider.
             first = int((depths > 0.0).any(axis=0).argmax()) if turn + 1 < turns else 0
             shares = np.maximum(depths[:, first], 0.0) / np.maximum(distances[:, first], 1e-9)
-            own = with_length(own + away[:, first] * shares[:, None], lengths)
+            moved = own + away[:, first] * shares[:, None]
+            own = origins + with_length(moved - origins, lengths)
             turn += first + 1
-        if turn:
-            ways[self.bones] = own
+            if turn == turns:
+                break
+            away, squares = self._from_axes(own, ends, turn)
+        tails[self.bones] = own
 
     def _from_axes(self, tails: Array, ends: Array, turn: int) -> tuple[Array, Array]:
-        """Return the ways from the axes of the colliders from a turn on to tails, and lengths.
+        """Return the ways from the axes of the colliders from a turn on to tails, and squares.
 
         They are (n, turns, 3) and (n, turns).
         """
@@ -80,7 +90,7 @@ class Contacts:
             along = ends[:, 1].take(colliders, 0) - start
             shares = np.vecdot(away, along) / np.maximum(np.vecdot(along, along), 1e-18)
             away -= np.clip(shares, 0.0, 1.0)[..., None] * along
-        return away, np.sqrt(np.vecdot(away, away))
+        return away, np.vecdot(away, away)
 
 
 def with_length(vectors: Array, lengths: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,17 +50,17 @@ class PlacedBones:
 
         They are copies, (steps, bones, 3, 5) and (steps, colliders, 2, 3). The first level moves.
         """
-        frames = np.empty((steps, *self.frames.shape))
-        frames[:] = self.frames
         if steps == 1:
-            return frames, self.colliders[None]
-        shares = (np.arange(1.0, steps + 1) / steps)[:, None, None, None]
+            return self.frames.copy()[None], self.colliders[None]
+        shares = _shares_of_steps(steps)
         earlier = before.frames[first]
         mixed = earlier + shares[:-1] * (self.frames[first] - earlier)
         # One Newton step of the polar decomposition makes the mixture a rotation again.
         turns = mixed[..., :3]
-        straight = 1.5 * mixed - 0.5 * turns @ (turns.swapaxes(-1, -2) @ mixed)
+        straight = 1.5 * mixed - (0.5 * turns) @ (turns.swapaxes(-1, -2) @ mixed)
         straight[..., 3] = mixed[..., 3]
+        frames = np.empty((steps, *self.frames.shape))
+        frames[:] = self.frames
         frames[:-1, first] = straight
         return frames, before.colliders + shares * (self.colliders - before.colliders)
 
@@ -130,6 +131,12 @@ class SpringFrames:
         return PlacedBones(
             frames, tails, lengths, centers, ends, world_from_character[:3, 3].copy()
         )
+
+
+@cache
+def _shares_of_steps(steps: int) -> Array:
+    """Return which part of the way is behind after each of equal steps, (steps, 1, 1, 1)."""
+    return (np.arange(1.0, steps + 1) / steps)[:, None, None, None]
 
 
 def transform_points(matrices: Array, points: Array) -> Array:

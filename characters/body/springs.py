@@ -175,21 +175,23 @@ class SpringBody:
         tails, levels = np.empty_like(free), self._frames.levels
         swung = np.empty((len(free), 3, 4))  # rotations and origins
         for number, level in enumerate(levels):
-            own, reach = frames[level], lengths[level]
+            own, reach, ends = frames[level], lengths[level], tails[level]
             if number:
                 above = swung.take(self._frames.parents[level], 0)
                 own[:] = above[..., :3] @ own
                 own[..., 3] += above[..., 3]
-            origins, rest = own[..., 3], own[..., 4]
-            way = with_length(free[level] + pulled[level] * rest - origins, reach)
+            origins = own[..., 3]
+            np.multiply(pulled[level], own[..., 4], out=ends)
+            ends += free[level]
+            ends[:] = origins + with_length(ends - origins, reach)
             # After the distance is restored, as in the specification; `push_out` keeps the distance
             # itself.
             contacts = self._contacts[number]
             if contacts is not None:
-                contacts.push_out(way, origins, reach, colliders)
-            np.add(origins, way, out=tails[level])
+                contacts.push_out(ends, origins, reach, colliders)
             if number + 1 < len(levels):
-                swung[level, :, :3] = _swing(own, self._frames.axes[level], way / reach)
+                aimed = (ends - origins) / reach
+                swung[level, :, :3] = _swing(own, self._frames.axes[level], aimed)
                 swung[level, :, 3] = origins
         return tails
 
