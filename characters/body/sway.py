@@ -71,11 +71,17 @@ class BodySway:
         none = (0.0, 0.0, 0.0)
         self._breath = rotation_vectors(axes, [breath.get(name, none) for name, _ in there])
         sway = np.array([_SWAY_DEG.get(name, none) for name, _ in there]).reshape(-1, 3)
-        # One wave for each axis of each joint: (n, 3 axes, 3).
-        self._sway = np.radians(sway)[..., None] * np.swapaxes(axes, -1, -2)
+        vectors = np.radians(sway)[..., None] * np.swapaxes(axes, -1, -2) / math.sqrt(_WAVE_COUNT)
+        # Each sways by the sum of its waves, (n, 3 · waves, 3).
+        self._sway = np.tile(vectors, (1, _WAVE_COUNT, 1))
         rng = np.random.default_rng(seed)
-        self._rates = rng.uniform(_MIN_WAVE_HZ, _MAX_WAVE_HZ, (_WAVE_COUNT, *sway.shape)) * math.tau
-        self._phases = rng.uniform(0.0, math.tau, self._rates.shape)
+        drawn = (_WAVE_COUNT, *sway.shape)
+        rates = rng.uniform(_MIN_WAVE_HZ, _MAX_WAVE_HZ, drawn) * math.tau
+        phases = rng.uniform(0.0, math.tau, drawn)
+        # Some for each axis of each joint, (n, 1, 3 · waves).
+        self._rates, self._phases = (
+            each.swapaxes(0, 1).reshape(-1, 1, 3 * _WAVE_COUNT) for each in (rates, phases)
+        )
         self._time, self._phase, self._effort = 0.0, float(rng.uniform()), 0.0
         self.breath = 0.0
         """Filling of the lungs, 0…1."""
@@ -104,9 +110,8 @@ class BodySway:
         depth = (self.breath - 0.5) * (1.0 + (MAX_BREATH_DEPTH - 1.0) * self._effort)
         vectors = self._breath * (depth * expressivity.amplitude)
         if calm > 1e-3:
-            waves = np.sin(self._rates * self._time + self._phases).sum(0)
-            waves *= calm * expressivity.amplitude / math.sqrt(_WAVE_COUNT)
-            vectors += (waves[:, None] @ self._sway)[:, 0]
+            waves = np.sin(self._rates * self._time + self._phases)
+            vectors += (waves @ self._sway)[:, 0] * (calm * expressivity.amplitude)
         if posture is not None:
             posture[: len(vectors)] += vectors
             vectors = posture

@@ -156,7 +156,7 @@ def _check(command: CharacterCommand) -> None:
     boxes = [(each.table_from_box.ravel(), each.velocity) for each in command.obstacles]
     for point in (going.target, going.facing, command.gaze, *chain.from_iterable(boxes)):
         if point is not None:
-            numbers += [float(value) for value in point]
+            numbers += np.asarray(point, float).tolist()
     if not all(map(math.isfinite, numbers)):
         raise CharacterError(
             f"command at {command.timestamp} s has a number that is not finite: speed "

@@ -104,7 +104,7 @@ class KeepClear:
         self._outline: Outline | None = None
         self._drawn: tuple[Pose, Array] | None = None  # pose and table_from_character
         self._points: Array | None = None  # of the outline, then, (n, 3)
-        self._walked: Array | None = None  # where the controller was, (2,)
+        self._walked: RootDelta | None = None  # where the controller was
         self._offset, self._velocity = np.zeros(2), np.zeros(2)
         self._leap: _Leap | None = None
         self._side: Array | None = None  # direction of the way that it is on, (2,)
@@ -125,7 +125,7 @@ class KeepClear:
             target = self._better_goal(command, going, points, walks)
             for each in command.obstacles:
                 target = detour(self._here, target, each, self._body_height)
-        if not self._offset.any() and target is going.target:
+        if target is going.target and not self._is_displaced:
             return command
         target, facing = (
             None if point is None else np.asarray(point, float) - self._offset
@@ -137,19 +137,19 @@ class KeepClear:
         self, frame: ControllerFrame, command: CharacterCommand, elapsed: float
     ) -> ControllerFrame:
         """Return what a controller plays, where the character is clear of the obstacles."""
-        walked = np.array([frame.place.x, frame.place.z])
-        step = np.zeros(2) if self._walked is None else walked - self._walked
-        self._walked = walked
+        now, before = frame.place, self._walked or frame.place
+        self._walked = now
         points = self._outline_of(command)
         if points is not None:
+            step = np.array([now.x - before.x, now.z - before.z])
             self._advance(points + np.insert(step, 1, 0.0), step, frame, command, elapsed)
         else:  # nothing is near any more, perhaps in the midst of a leap
             self._velocity, self._seek, self._hidden_s = np.zeros(2), None, 0.0
             self._fly(elapsed)
-        if not self._offset.any():
+        if not self._is_displaced:
             return frame
-        x, z = (walked + self._offset).tolist()
-        place = RootDelta(x, z, frame.place.yaw)
+        x, z = self._offset.tolist()
+        place = RootDelta(now.x + x, now.z + z, now.yaw)
         if self._leap is None:
             return replace(frame, place=place)
         feet = None if frame.feet_down is None else [False] * len(frame.feet_down)
@@ -181,6 +181,10 @@ class KeepClear:
             low, high = low + np.minimum(along, 0.0), high + np.maximum(along, 0.0)
         pose[:3, 3] = pose[:3, :3] @ (low + high) / 2
         return pose, np.asarray(high - low)
+
+    @property
+    def _is_displaced(self) -> bool:
+        return self._offset.tolist() != [0.0, 0.0]
 
     @property
     def _here(self) -> Array:

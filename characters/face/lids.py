@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,9 +73,14 @@ class Lids:
 
     def limit(self, weights: Array, most: float) -> None:
         """Close the eyes at most this far, 0…1, in morph weights (morphs,)."""
-        for number in self.sides if self.both is None else (self.both, *self.sides):
+        for number in self._all:
             if weights[number] > most:
                 weights[number] = most
+
+    @cached_property
+    def _all(self) -> list[int]:
+        sides: list[int] = self.sides.tolist()
+        return sides if self.both is None else [self.both, *sides]
 
 
 def numbers_by_name(morphs: Sequence[str]) -> dict[str, int]:

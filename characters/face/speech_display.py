@@ -96,6 +96,8 @@ class SpeechDisplay:
             not utterance.phones or not -PAUSE_BESIDE_S <= now - start < utterance.duration
         ):
             utterance = None
+        if utterance is None and not self.active:
+            return
         self._since += elapsed
         if utterance != self._utterance or (utterance is not None and start != self._start):
             self._begin(utterance, start)

@@ -52,6 +52,11 @@ class PlannedValues:
         self._decay: OffsetDecay | None = None
         self._changed = 0.0
 
+    @property
+    def resting(self) -> bool:
+        """Whether nothing is planned, and what was shown last are zeros."""
+        return self._shown is self._zeros
+
     def update(self, plan: Hashable, values: Callable[[float], Array], now: float) -> Array:
         """Return the values to show at a time [s], (size,).
 

@@ -61,7 +61,8 @@ class StanceLayer:
         values = values * share
         if spoken is not None:
             values += spoken * self._share
-        if not self._joints.able or not (values.any() or self._turning):
+        moving = self._turning or spoken is not None or not self._values.resting
+        if not self._joints.able or not moving or not (self._turning or values.any()):
             return pose
         return self._joints.apply(pose, values, turns[0] * share, turns[1] * share)
 
@@ -99,7 +100,7 @@ class FaceShiftLayer:
             lambda time: self._names.morph_weights(faces, time),
             now,
         )
-        if not weights.any():
+        if self._values.resting or not weights.any():
             return pose
         shown: Array = weights if pose.morphs is None else pose.morphs + weights
         return Pose(pose.translations, pose.rotations, pose.scales, np.minimum(shown, 1.0))

@@ -58,12 +58,14 @@ class FingersLayer:
         # What is multiplied from the right by half a rotation vector, as a matrix for rows.
         self._halves = rotations.multiply(np.eye(4), pure[:, None])
         self._squares = np.vecdot(halves, halves)[:, None]
-        self._owners = np.array(owners, np.intp)
-        self._hands = np.array([hand.side == "right" for hand, *_ in fingers], np.intp)
         rng = np.random.default_rng([seed, 6])
         # A wave for each finger, then one for each hand.
-        self._rates = math.tau * rng.uniform(SLOWEST_HZ, FASTEST_HZ, len(fingers) + 2)
-        self._phases = rng.uniform(0.0, math.tau, len(fingers) + 2)
+        rates = math.tau * rng.uniform(SLOWEST_HZ, FASTEST_HZ, len(fingers) + 2)
+        phases = rng.uniform(0.0, math.tau, len(fingers) + 2)
+        hands = [len(fingers) + (fingers[number][0].side == "right") for number in owners]
+        # For each joint that of its finger and that of its hand, (2, joints).
+        waves = np.array([owners, hands], np.intp)
+        self._rates, self._phases = rates[waves], phases[waves]
         self._time, self._size = 0.0, 1.0
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
@@ -74,11 +76,10 @@ class FingersLayer:
         size = self._size * context.rest * context.expressivity.amplitude
         if not len(self._joints) or size < 1e-3:
             return pose
-        waves = np.sin(self._rates * self._time + self._phases)
-        curls = size * (waves[:-2] + HAND_SHARE * waves[-2:][self._hands])
-        sines = curls[self._owners][:, None]
+        fingers, hands = np.sin(self._rates * self._time + self._phases)
+        sines = (size * (fingers + HAND_SHARE * hands))[:, None]
         local = pose.rotations.copy()
-        own = local[self._joints]
+        own = local.take(self._joints, 0)
         # Half angles so small are their sines, to a thousandth.
         across = (own[:, None] @ self._halves)[:, 0]
         local[self._joints] = np.sqrt(1.0 - self._squares * sines * sines) * own + sines * across

@@ -70,10 +70,12 @@ class FrameContext:
 
     def in_character(self, point: Array) -> Array:
         """Return a point (3,) of the table frame in the character frame [m]."""
-        placed = self.table_from_character
-        offset = np.asarray(point, float) - placed[:3, 3]
-        inside: Array = offset @ placed[:3, :3] / float(placed[1, 1]) ** 2
-        return inside
+        # A single point: plain numbers are quicker than arrays.
+        (ax, ay, az, px), (bx, by, bz, py), (cx, cy, cz, pz), _ = self.table_from_character.tolist()
+        x, y, z = np.asarray(point, float).tolist()
+        x, y, z, square = x - px, y - py, z - pz, by * by
+        inside = x * ax + y * bx + z * cx, x * ay + y * by + z * cy, x * az + y * bz + z * cz
+        return np.array(inside) / square
 
     def direction_in_character(self, direction: Array | None) -> Array | None:
         """Return a direction (3,) of the table frame in the character frame; None stays None."""

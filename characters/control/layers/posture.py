@@ -33,6 +33,6 @@ class PostureLayer:
             context.elapsed, context.frame.effort, context.rest, expressivity, posture
         )
         local = pose.rotations.copy()
-        local[joints] = rotations.multiply(local[joints], turns)
+        local[joints] = rotations.multiply(local.take(joints, 0), turns)
         moved = Pose(pose.translations, local, pose.scales, pose.morphs)
         return Found(moved, context.found(breath=self._sway.breath))
