@@ -61,8 +61,11 @@ def rotate(q: Sequence[float], vector: Sequence[float]) -> Vector:
 
 def between(start: Vector, end: Vector) -> Quaternion:
     """Return the shortest rotation that turns one direction to another."""
-    x, y, z = cross(start, end)
-    w = length(start) * length(end) + dot(start, end)
+    ax, ay, az = start
+    bx, by, bz = end
+    x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    squares = (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz)
+    w = math.sqrt(squares) + ax * bx + ay * by + az * bz
     size = math.sqrt(x * x + y * y + z * z + w * w)
     if size < 1e-12:  # opposite directions, or zero vectors
         return IDENTITY
@@ -71,9 +74,10 @@ def between(start: Vector, end: Vector) -> Quaternion:
 
 def from_rotation_vector(vector: Vector) -> Quaternion:
     """Return the rotation about a vector by its length [rad]."""
-    angle = length(vector)
+    x, y, z = vector
+    angle = math.sqrt(x * x + y * y + z * z)
     scale = 0.5 if angle < 1e-9 else math.sin(angle / 2) / angle
-    return vector[0] * scale, vector[1] * scale, vector[2] * scale, math.cos(angle / 2)
+    return x * scale, y * scale, z * scale, math.cos(angle / 2)
 
 
 def to_rotation_vector(q: Sequence[float]) -> Vector:
@@ -119,9 +123,23 @@ def make_global(turns: list[Quaternion], places: list[Vector], parents: Sequence
 
     `parents` are smaller numbers than those of their children, negative for none.
     """
+    # Products written out: this is most of what legs, arms and heads cost in a frame.
     for joint, parent in enumerate(parents):
         if parent >= 0:
-            above, (x, y, z) = turns[parent], places[parent]
-            turns[joint] = multiply(above, turns[joint])
-            dx, dy, dz = rotate(above, places[joint])
-            places[joint] = (x + dx, y + dy, z + dz)
+            qx, qy, qz, qw = turns[parent]
+            x, y, z, w = turns[joint]
+            turns[joint] = (
+                qw * x + qx * w + qy * z - qz * y,
+                qw * y - qx * z + qy * w + qz * x,
+                qw * z + qx * y - qy * x + qz * w,
+                qw * w - qx * x - qy * y - qz * z,
+            )
+            x, y, z = places[joint]
+            cx, cy, cz = qy * z - qz * y, qz * x - qx * z, qx * y - qy * x
+            cx, cy, cz = cx + cx, cy + cy, cz + cz
+            px, py, pz = places[parent]
+            places[joint] = (
+                px + x + qw * cx + qy * cz - qz * cy,
+                py + y + qw * cy + qz * cx - qx * cz,
+                pz + z + qw * cz + qx * cy - qy * cx,
+            )

@@ -216,14 +216,17 @@ class _Energy:
         matrix = jacobian.T @ jacobian
         matrix[self.diagonal, self.diagonal] += stiff
         force = np.array(self.misses) @ jacobian + slope
-        change = np.linalg.solve(matrix, force).tolist()
+        sides = np.array([force, *(row for row, _ in self.leg_rows)])
+        change, *yields = np.linalg.solve(matrix, sides.T).T.tolist()
         # A leg gets no longer than straight: a step that counted on that would end beside its way.
-        for row, room in self.leg_rows:
-            if -math.fsum(map(operator.mul, row, change)) > room:
-                longer = np.array(row)
-                matrix += TAUT_LEG * TAUT_LEG * np.outer(longer, longer)
-                force = force - TAUT_LEG * TAUT_LEG * room * longer
-                change = np.linalg.solve(matrix, force).tolist()
+        # One more row changes what is solved by a multiple of how its own force would be solved
+        # (Sherman and Morrison 1950).
+        for number, (row, room) in enumerate(self.leg_rows):
+            if -_product(row, change) > room:
+                own = yields[number]
+                taut = 1.0 / (1.0 / TAUT_LEG**2 + _product(row, own))
+                change = _moved(change, own, -taut * (room + _product(row, change)))
+                yields = [_moved(each, own, -taut * _product(row, each)) for each in yields]
         shifted = max(map(abs, change[:3])) / (MAX_STEP_HEIGHTS * self.height)
         size = STEP_SHARE / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
         return [value - size * more for value, more in zip(state, change, strict=True)]
@@ -354,6 +357,14 @@ class _Energy:
             none = [0.0] * (len(self.springs) - 9)
             self.rows.append([0.0, 0.0, 0.0, *turn, *turn, *none])
             self.misses.append(size * over)
+
+
+def _product(row: Row, change: Row) -> float:
+    return sum(map(operator.mul, row, change))
+
+
+def _moved(change: Row, way: Row, share: float) -> Row:
+    return [value + share * more for value, more in zip(change, way, strict=True)]
 
 
 class _Posed(NamedTuple):
