@@ -56,27 +56,23 @@ class Contacts:
         `ends` are both ends of the axes of all colliders, (colliders, 2, 3). Each tail leaves its
         colliders in turn, and is put back to its distance from the joint, `origins`, each time.
         """
-        own = tails.take(self.bones, 0)
-        away, squares = self._from_axes(own, ends, 0)
-        if (squares >= self.squared_reach).all():
-            return
-        lengths, origins = lengths.take(self.bones, 0), origins.take(self.bones, 0)
-        turn, turns = 0, self.reach.shape[1]
-        while True:
-            distances = np.sqrt(squares)
-            depths = self.reach[:, turn:] - distances
-            if depths.max() <= 0.0:
+        own, turn, turns = tails.take(self.bones, 0), 0, self.reach.shape[1]
+        while turn < turns:
+            away, squares = self._from_axes(own, ends, turn)
+            inside = squares < self.squared_reach[:, turn:]
+            if not inside.any():
                 break
             # The first turn in which a tail is in a collider.
-            first = int((depths > 0.0).any(axis=0).argmax()) if turn + 1 < turns else 0
-            shares = np.maximum(depths[:, first], 0.0) / np.maximum(distances[:, first], 1e-9)
-            moved = own + away[:, first] * shares[:, None]
-            own = origins + with_length(moved - origins, lengths)
+            first = int(inside.any(axis=0).argmax()) if turn + 1 < turns else 0
+            distances = np.sqrt(np.maximum(squares[:, first], 1e-18))
+            shares = np.maximum(self.reach[:, turn + first] / distances - 1.0, 0.0)
+            joints = origins.take(self.bones, 0)
+            way = own - joints
+            way += away[:, first] * shares[:, None]
+            own = joints + with_length(way, lengths.take(self.bones, 0))
             turn += first + 1
-            if turn == turns:
-                break
-            away, squares = self._from_axes(own, ends, turn)
-        tails[self.bones] = own
+        if turn:
+            tails[self.bones] = own
 
     def _from_axes(self, tails: Array, ends: Array, turn: int) -> tuple[Array, Array]:
         """Return the ways from the axes of the colliders from a turn on to tails, and squares.
@@ -95,6 +91,6 @@ class Contacts:
 
 def with_length(vectors: Array, lengths: Array) -> Array:
     """Return vectors (n, 3) with these lengths (n, 1)."""
-    own = np.sqrt(np.vecdot(vectors, vectors))[:, None]
-    scaled: Array = vectors * (lengths / np.maximum(own, 1e-9))
+    squares = np.maximum(np.vecdot(vectors, vectors), 1e-18)[:, None]
+    scaled: Array = vectors * (lengths / np.sqrt(squares))
     return scaled

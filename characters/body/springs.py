@@ -118,10 +118,11 @@ class SpringBody:
     def _turns(self, directions: Array) -> Array:
         """Return the smallest rotations of the bones' axes to directions, (bones, 4)."""
         halves: Array = (self._half_turns @ directions[:, :, None])[..., 0]
-        halves[:, 3] += 1.0
-        if halves[:, 3].min() < 1e-9:  # any axis across will do
+        cosines = halves[:, 3:]
+        cosines += 1.0
+        if cosines.min() < 1e-9:  # any axis across will do
             return rotations.between(self._frames.axes, directions)
-        halves /= np.sqrt(2.0 * halves[:, 3:])
+        halves /= np.sqrt(2.0 * cosines)
         return halves
 
     def _carry(self, before: PlacedBones, now: PlacedBones, elapsed: float) -> PlacedBones:
@@ -181,9 +182,10 @@ class SpringBody:
                 own[:] = above[..., :3] @ own
                 own[..., 3] += above[..., 3]
             origins = own[..., 3]
-            np.multiply(pulled[level], own[..., 4], out=ends)
-            ends += free[level]
-            ends[:] = origins + with_length(ends - origins, reach)
+            way = pulled[level] * own[..., 4]
+            way += free[level]
+            way -= origins
+            np.add(origins, with_length(way, reach), out=ends)
             # After the distance is restored, as in the specification; `push_out` keeps the distance
             # itself.
             contacts = self._contacts[number]
