@@ -87,9 +87,9 @@ class HeadJoints:
 
     def place(self, pose: Pose) -> None:
         """Compute the joints' rotations and positions in a pose."""
-        turns = pose.rotations[self._numbers].tolist()
-        shifts = pose.translations[self._numbers].tolist()
-        scales = None if pose.scales is None else pose.scales[self._numbers].tolist()
+        turns = pose.rotations.take(self._numbers, 0).tolist()
+        shifts = pose.translations.take(self._numbers, 0).tolist()
+        scales = None if pose.scales is None else pose.scales.take(self._numbers, 0).tolist()
         for number, (joint, own, shift) in enumerate(zip(self._joints, turns, shifts, strict=True)):
             joint.turn, joint.place = own, shift
             if joint.parent >= 0:

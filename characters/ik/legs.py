@@ -68,8 +68,8 @@ class LegIK:
 
     def frames(self, pose: Pose) -> LegFrames:
         """Return the global frames of the joints in one pose."""
-        turns: list[Quaternion] = pose.rotations[self.indices].tolist()
-        positions: list[Vector] = pose.translations[self.indices].tolist()
+        turns: list[Quaternion] = pose.rotations.take(self.indices, 0).tolist()
+        positions: list[Vector] = pose.translations.take(self.indices, 0).tolist()
         make_global(turns, positions, self.skeleton.parents)
         return LegFrames(turns, positions)
 
@@ -81,7 +81,7 @@ class LegIK:
         Hips and knees bend as far as the legs reach.
         """
         frames = self.frames(pose)
-        offsets = pose.translations[self.indices[self.joints[:, 4]]].tolist()
+        offsets = pose.translations.take(self._toes, 0).tolist()
         ankles, turns = [], []
         for (*_, ankle, _), offset, ball, facing in zip(
             self._joints, offsets, balls, facings, strict=True
@@ -185,6 +185,11 @@ class LegIK:
     def _rows(self) -> NDArray[np.intp]:
         """Hip, knee and ankle of each leg, numbers in the whole skeleton."""
         return self.indices[self.joints[:, 1:4]].ravel()
+
+    @cached_property
+    def _toes(self) -> NDArray[np.intp]:
+        """Toes of each leg, numbers in the whole skeleton."""
+        return self.indices[self.joints[:, 4]]
 
     @cached_property
     def _joints(self) -> list[list[int]]:

@@ -193,7 +193,7 @@ class StanceJoints:
         """
         turns = rotations.from_rotation_vector((self._vectors @ values[3:]).reshape(-1, 3))
         local = pose.rotations.copy()
-        local[self._joints] = rotations.multiply(local[self._joints], turns)
+        local[self._joints] = rotations.multiply(local.take(self._joints, 0), turns)
         if hips or trunk:
             self._turn(local, hips, trunk)
         turned = Pose(pose.translations, local, pose.scales, pose.morphs)

@@ -191,11 +191,13 @@ class WalkController:
         )
 
     def _play(self, steered: SteeringOutput, state: str, weight: float, now: float) -> None:
-        motion = self._motion = self.gaits.at(steered.speed, steered.angular, steered.stride)
-        if self._machine.state == "move":
-            self._strides.change(motion, now - self._machine.entered)
-        elif state == "move":
-            self._strides.restart(motion, self._first_phase)
+        moves = self._machine.state == "move"
+        if moves or state == "move":
+            motion = self._motion = self.gaits.at(steered.speed, steered.angular, steered.stride)
+            if moves:
+                self._strides.change(motion, now - self._machine.entered)
+            else:
+                self._strides.restart(motion, self._first_phase)
         if state in self._actions:
             self._play_action(self._actions[state], weight, now, self._machine.state == state)
         self._machine.request(state, now)

@@ -325,9 +325,9 @@ class ReachLayer:
             else:
                 turns = rotations.from_rotation_vector(self._decay.at(now - self._switched))
                 local = pose.rotations.copy()
-                local[joints] = rotations.multiply(turns, local[joints])
+                local[joints] = rotations.multiply(turns, local.take(joints, 0))
                 pose = replace(pose, rotations=local)
-        self._shown = pose.rotations[joints]
+        self._shown = pose.rotations.take(joints, 0)
         return pose
 
 

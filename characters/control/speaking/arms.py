@@ -101,5 +101,5 @@ class ArmJoints:
             return pose
         turns = rotations.from_rotation_vector(self._vectors @ degrees)
         local = pose.rotations.copy()
-        local[self._joints] = rotations.multiply(local[self._joints], turns)
+        local[self._joints] = rotations.multiply(local.take(self._joints, 0), turns)
         return Pose(pose.translations, local, pose.scales, pose.morphs)

@@ -90,8 +90,8 @@ class UpperBodyKinematics:
         """Return the frames of trunk and upper arms, with the whole arms, or all."""
         count = self._counts[extent]
         order = self._order[:count]
-        turns: list[Quaternion] = pose.rotations[order].tolist()
-        places: list[Vector] = (pose.translations[order] * self._sizes[:count]).tolist()
+        turns: list[Quaternion] = pose.rotations.take(order, 0).tolist()
+        places: list[Vector] = (pose.translations.take(order, 0) * self._sizes[:count]).tolist()
         make_global(turns, places, self.parents[:count])
         return Frames(turns, places)
 
