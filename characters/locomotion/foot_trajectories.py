@@ -84,12 +84,12 @@ class FootTrajectories:
 
     def time(self, number: int, phase: float) -> float:
         """Return the time [s] in a clip at a phase."""
-        key = number, phase
-        if key not in self._times:
+        time = self._times.get((number, phase))
+        if time is None:
             if len(self._times) >= _CACHED_TIMES:
                 self._times.clear()
-            self._times[key] = self.motions[number].time(phase)
-        return self._times[key]
+            time = self._times[number, phase] = self.motions[number].time(phase)
+        return time
 
     def travel(self, number: int, start: float, end: float) -> RootDelta:
         """Return how the root of a clip moves over the ground between two phases."""

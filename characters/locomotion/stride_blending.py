@@ -68,14 +68,15 @@ class StrideBlend(PhaseDriven):
         """Return how the root moves over the ground between two phases."""
         total = RootDelta()
         parts = max(math.ceil((end - start) * _PARTS_PER_CYCLE), 1)
-        each = (end - start) / parts
-        for low in (start + each * part for part in range(parts)):
+        each, distance = (end - start) / parts, self.share * self.stride
+        for part in range(parts):
+            low = start + each * part
             x = z = yaw = 0.0
             for number, weight in self.contributions:
                 delta = self.trajectories.travel(number, low, low + each)
                 x, z, yaw = x + weight * delta.x, z + weight * delta.z, yaw + weight * delta.yaw
-            distance = self.share * self.stride
-            total = total.then(RootDelta(x * distance, z * distance, yaw * self.share))
+            delta = RootDelta(x * distance, z * distance, yaw * self.share)
+            total = total.then(delta) if part else delta
         return total
 
     def _feet(self, feet: Sequence[Sequence[float]]) -> tuple[list[Vector], list[Quaternion]]:
@@ -91,11 +92,10 @@ class StrideBlend(PhaseDriven):
                 balls.append((x, y, z))
                 facings.append(normalize(facing))
                 continue
-            homes = [
-                [weight * value for value in self.trajectories.homes[number][leg]]
-                for number, weight in self.contributions
-            ]
-            home = [sum(values) for values in zip(*homes, strict=True)]
+            home = [0.0] * len(still)
+            for number, weight in self.contributions:
+                own = self.trajectories.homes[number][leg]
+                home = [value + weight * more for value, more in zip(home, own, strict=True)]
             if self.share < 1.0:
                 higher = (y - home[1]) * self.share**_HEIGHT_EXPONENT
                 x, _, z, *facing = _interpolate(still, foot, self.share)

@@ -229,8 +229,10 @@ class StateMachine:
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        total = RootDelta()
         first, last = self._active(start), self._active(end)
+        if first == last:
+            return self._travel(self._switches[last], start, end)
+        total = RootDelta()
         for number in range(first, last + 1):
             stop = end if number == last else self._switches[number + 1].time
             total = total.then(self._travel(self._switches[number], start, stop))
@@ -275,6 +277,9 @@ class StateMachine:
 
     def _active(self, time: float) -> int:
         """Return the number of the last switch before a time [s]."""
+        last = len(self._switches) - 1
+        if time >= self._switches[last].time:  # as in nearly all frames
+            return last
         return max(bisect_right(self._switches, time, key=lambda switch: switch.time) - 1, 0)
 
     def _check(self, state: str) -> None:
