@@ -159,8 +159,8 @@ class Gaze:
         # Pitch is positive upwards, so a drop is subtracted.
         aimed = held[0] + self._yaw, held[1] + self._pitch - head_drop
         self._turned = rotate(body, _turn_between(held, aimed))
-        if head_turn is not None and head_turn.any():
-            x, y, z = head_turn.tolist()
+        x, y, z = (0.0, 0.0, 0.0) if head_turn is None else head_turn.tolist()
+        if x or y or z:
             besides = from_rotation_vector(rotate(body, (x, y, z)))
             # A nod from the left: about the chest's axes, wherever the head looks.
             both = multiply(besides, from_rotation_vector(self._turned))

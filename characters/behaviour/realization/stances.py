@@ -197,7 +197,8 @@ class StanceJoints:
         if hips or trunk:
             self._turn(local, hips, trunk)
         turned = Pose(pose.translations, local, pose.scales, pose.morphs)
-        if self._legs is None or not (hips or trunk or values[: self._legs_follow].any()):
+        followed = values[: self._legs_follow].tolist()
+        if self._legs is None or not (hips or trunk or any(followed)):
             return turned
         return self._plant_feet(pose, turned, values[:3] * self._leg_length)
 

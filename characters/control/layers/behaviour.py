@@ -61,8 +61,8 @@ class StanceLayer:
         values = values * share
         if spoken is not None:
             values += spoken * self._share
-        moving = self._turning or spoken is not None or not self._values.resting
-        if not self._joints.able or not moving or not (self._turning or values.any()):
+        still = spoken is None and self._values.resting  # else values may be zeros all the same
+        if not self._joints.able or not (self._turning or (not still and values.any())):
             return pose
         return self._joints.apply(pose, values, turns[0] * share, turns[1] * share)
 
