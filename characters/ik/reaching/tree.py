@@ -178,7 +178,6 @@ class _Energy:
             low, high = max(whole[0], joints[0]) - own, min(whole[1], joints[1]) - own
             self.ranges.append((min(low, 0.0), max(high, 0.0)))
         self.ranges += [(-COLLAR_RANGE_RAD, COLLAR_RANGE_RAD)] * 3 * len(pulls)
-        self.diagonal = np.arange(len(self.springs))
         self.rows: list[Row] = []
         self.leg_rows: list[tuple[Row, float]] = []
         self.misses: list[float] = []
@@ -214,7 +213,7 @@ class _Energy:
         self._add_targets(state, stiff)
         jacobian = np.array(self.rows).reshape(-1, len(state))
         matrix = jacobian.T @ jacobian
-        matrix[self.diagonal, self.diagonal] += stiff
+        matrix.ravel()[:: len(state) + 1] += stiff  # the diagonal
         force = np.array(self.misses) @ jacobian + slope
         sides = np.array([force, *(row for row, _ in self.leg_rows)])
         change, *yields = np.linalg.solve(matrix, sides.T).T.tolist()
@@ -223,10 +222,11 @@ class _Energy:
         # (Sherman and Morrison 1950).
         for number, (row, room) in enumerate(self.leg_rows):
             if -_product(row, change) > room:
-                own = yields[number]
+                own, *later = yields[number:]
                 taut = 1.0 / (1.0 / TAUT_LEG**2 + _product(row, own))
                 change = _moved(change, own, -taut * (room + _product(row, change)))
-                yields = [_moved(each, own, -taut * _product(row, each)) for each in yields]
+                later = [_moved(each, own, -taut * _product(row, each)) for each in later]
+                yields[number + 1 :] = later
         shifted = max(map(abs, change[:3])) / (MAX_STEP_HEIGHTS * self.height)
         size = STEP_SHARE / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
         return [value - size * more for value, more in zip(state, change, strict=True)]
