@@ -62,9 +62,9 @@ class FingersLayer:
         # A wave for each finger, then one for each hand.
         rates = math.tau * rng.uniform(SLOWEST_HZ, FASTEST_HZ, len(fingers) + 2)
         phases = rng.uniform(0.0, math.tau, len(fingers) + 2)
-        hands = [len(fingers) + (fingers[number][0].side == "right") for number in owners]
+        shared = [len(fingers) + (fingers[number][0].side == "right") for number in owners]
         # For each joint that of its finger and that of its hand, (2, joints).
-        waves = np.array([owners, hands], np.intp)
+        waves = np.array([owners, shared], np.intp)
         self._rates, self._phases = rates[waves], phases[waves]
         self._time, self._size = 0.0, 1.0
 
@@ -76,8 +76,8 @@ class FingersLayer:
         size = self._size * context.rest * context.expressivity.amplitude
         if not len(self._joints) or size < 1e-3:
             return pose
-        fingers, hands = np.sin(self._rates * self._time + self._phases)
-        sines = (size * (fingers + HAND_SHARE * hands))[:, None]
+        own_waves, shared_waves = np.sin(self._rates * self._time + self._phases)
+        sines = (size * (own_waves + HAND_SHARE * shared_waves))[:, None]
         local = pose.rotations.copy()
         own = local.take(self._joints, 0)
         # Half angles so small are their sines, to a thousandth.

@@ -74,8 +74,9 @@ class FrameContext:
         (ax, ay, az, px), (bx, by, bz, py), (cx, cy, cz, pz), _ = self.table_from_character.tolist()
         x, y, z = np.asarray(point, float).tolist()
         x, y, z, square = x - px, y - py, z - pz, by * by
-        inside = x * ax + y * bx + z * cx, x * ay + y * by + z * cy, x * az + y * bz + z * cz
-        return np.array(inside) / square
+        turned = x * ax + y * bx + z * cx, x * ay + y * by + z * cy, x * az + y * bz + z * cz
+        inside: Array = np.array(turned) / square
+        return inside
 
     def direction_in_character(self, direction: Array | None) -> Array | None:
         """Return a direction (3,) of the table frame in the character frame; None stays None."""

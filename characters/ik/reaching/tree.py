@@ -360,7 +360,8 @@ class _Energy:
 
 
 def _product(row: Row, change: Row) -> float:
-    return sum(map(operator.mul, row, change))
+    product: float = sum(map(operator.mul, row, change))
+    return product
 
 
 def _moved(change: Row, way: Row, share: float) -> Row:
