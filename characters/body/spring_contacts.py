@@ -10,24 +10,21 @@ from cubeling.characters.model.springs import SpringBone, SpringCollider
 from cubeling.characters.skeleton.pose import Array
 
 _Indices = NDArray[np.intp]
-_NEVER = -1.0  # reach of a pair that does not exist: no distance is less
 
 
 @dataclass(frozen=True)
 class Contacts:
     """Which spring bones of a level may hit which colliders, one after the other."""
 
-    bones: _Indices
-    """The bones of the level with colliders, (n,)."""
-
     colliders: _Indices
-    """A collider for each bone and turn, (n, turns)."""
+    """A collider for each bone and turn, (bones, turns); any where there is none."""
 
     reach: Array
-    """The least distance of the tail to the axis of the collider, (n, turns) [m]."""
+    """The least distance of the tail to the axis of the collider, (bones, turns) [m]; 0 where there
+    is none."""
 
     squared_reach: Array
-    """Its square, 0 of a pair that does not exist, (n, turns) [m²]."""
+    """Its square, (bones, turns) [m²]."""
 
     are_spheres: bool
     """Whether all colliders are spheres."""
@@ -35,20 +32,17 @@ class Contacts:
     @staticmethod
     def of(bones: Sequence[SpringBone], shapes: Sequence[SpringCollider]) -> "Contacts | None":
         """Return the pairs of bones and colliders, numbered as in `shapes`; None without any."""
-        own = [number for number, bone in enumerate(bones) if bone.colliders]
-        if not own:
+        turns = max(len(bone.colliders) for bone in bones)
+        if not turns:
             return None
-        turns = max(len(bones[number].colliders) for number in own)
-        colliders = np.zeros((len(own), turns), np.intp)
-        reach = np.full((len(own), turns), _NEVER)
-        for row, number in enumerate(own):
-            bone = bones[number]
+        colliders = np.zeros((len(bones), turns), np.intp)
+        reach = np.zeros((len(bones), turns))
+        for number, bone in enumerate(bones):
             for turn, shape in enumerate(bone.colliders):
-                colliders[row, turn] = shapes.index(shape)
-                reach[row, turn] = bone.radius + shape.radius
+                colliders[number, turn] = shapes.index(shape)
+                reach[number, turn] = max(bone.radius + shape.radius, 0.0)
         are_spheres = all(shape.start == shape.end for shape in shapes)
-        squares = np.maximum(reach, 0.0) ** 2
-        return Contacts(np.array(own, np.intp), colliders, reach, squares, are_spheres)
+        return Contacts(colliders, reach, reach * reach, are_spheres)
 
     def push_out(self, tails: Array, origins: Array, lengths: Array, ends: Array) -> None:
         """Change tails of bones, (bones, 3), so that they leave colliders.
@@ -56,9 +50,10 @@ class Contacts:
         `ends` are both ends of the axes of all colliders, (colliders, 2, 3). Each tail leaves its
         colliders in turn, and is put back to its distance from the joint, `origins`, each time.
         """
-        own, turn, turns = tails.take(self.bones, 0), 0, self.reach.shape[1]
+        # Also those without colliders: to pick the others and to put them back would take longer.
+        turn, turns = 0, self.reach.shape[1]
         while turn < turns:
-            away, squares = self._from_axes(own, ends, turn)
+            away, squares = self._from_axes(tails, ends, turn)
             inside = squares < self.squared_reach[:, turn:]
             if not inside.any():
                 break
@@ -66,18 +61,15 @@ class Contacts:
             first = int(inside.any(axis=0).argmax()) if turn + 1 < turns else 0
             distances = np.sqrt(np.maximum(squares[:, first], 1e-18))
             shares = np.maximum(self.reach[:, turn + first] / distances - 1.0, 0.0)
-            joints = origins.take(self.bones, 0)
-            way = own - joints
+            way = tails - origins
             way += away[:, first] * shares[:, None]
-            own = joints + with_length(way, lengths.take(self.bones, 0))
+            np.add(origins, with_length(way, lengths), out=tails)
             turn += first + 1
-        if turn:
-            tails[self.bones] = own
 
     def _from_axes(self, tails: Array, ends: Array, turn: int) -> tuple[Array, Array]:
         """Return the ways from the axes of the colliders from a turn on to tails, and squares.
 
-        They are (n, turns, 3) and (n, turns).
+        They are (bones, turns, 3) and (bones, turns).
         """
         colliders = self.colliders[:, turn:]
         start = ends[:, 0].take(colliders, 0)
