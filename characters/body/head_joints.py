@@ -17,6 +17,7 @@ from cubeling.characters.skeleton.scalar_quaternions import (
     add,
     conjugate,
     from_rotation_vector,
+    make_global,
     multiply,
     rotate,
     subtract,
@@ -46,9 +47,6 @@ class HeadJoint:
     place: Vector = (0.0, 0.0, 0.0)
     """Its present position in the character frame [m]."""
 
-    scale: Vector = (1.0, 1.0, 1.0)
-    """Its present scale, which stretches its children's translations."""
-
     @property
     def facing(self) -> Quaternion:
         """The body's axes as this joint turns them."""
@@ -68,6 +66,7 @@ class HeadJoints:
         line = _line(head, anatomy.joint("neck"), skeleton)
         eyes = [j for side in ("left", "right") if (j := anatomy.joint(f"{side}Eye")) is not None]
         self._joints = _with_ancestors(skeleton, [*line, *eyes])
+        self._parents = [joint.parent for joint in self._joints]
         places = {joint.number: place for place, joint in enumerate(self._joints)}
         self._numbers = np.array([joint.number for joint in self._joints], np.intp)
         self._line = [self._joints[places[joint]] for joint in line]
@@ -89,22 +88,19 @@ class HeadJoints:
         """Compute the joints' rotations and positions in a pose."""
         turns = pose.rotations.take(self._numbers, 0).tolist()
         shifts = pose.translations.take(self._numbers, 0).tolist()
-        scales = None if pose.scales is None else pose.scales.take(self._numbers, 0).tolist()
-        for number, (joint, own, shift) in enumerate(zip(self._joints, turns, shifts, strict=True)):
-            joint.turn, joint.place = own, shift
-            if joint.parent >= 0:
-                above = self._joints[joint.parent]
-                # glTF: a parent's scale stretches where its children are, not how far they turn.
-                if scales is not None:
-                    shift = [a * b for a, b in zip(shift, above.scale, strict=True)]
-                x, y, z = rotate(above.turn, shift)
-                px, py, pz = above.place
-                joint.turn, joint.place = multiply(above.turn, own), (x + px, y + py, z + pz)
-            if scales is not None:
-                # Shear is neglected: bodies are scaled along their joints' axes, or uniformly.
-                before = self._joints[joint.parent].scale if joint.parent >= 0 else (1.0, 1.0, 1.0)
-                sx, sy, sz = scales[number]
-                joint.scale = (before[0] * sx, before[1] * sy, before[2] * sz)
+        if pose.scales is not None:
+            # glTF: a parent's scale stretches where its children are, not how far they turn. Shear
+            # is neglected: bodies are scaled along their joints' axes, or uniformly.
+            scales = pose.scales.take(self._numbers, 0).tolist()
+            for number, parent in enumerate(self._parents):
+                if parent >= 0:
+                    shifts[number], scales[number] = (
+                        [a * b for a, b in zip(own, scales[parent], strict=True)]
+                        for own in (shifts[number], scales[number])
+                    )
+        make_global(turns, shifts, self._parents)
+        for joint, turn, place in zip(self._joints, turns, shifts, strict=True):
+            joint.turn, joint.place = turn, place
 
     def eye_places(self, turned: Vector) -> list[Vector]:
         """Return where the eyes are once neck and head are turned; without eyes, the head."""
