@@ -1,6 +1,5 @@
 """Recorded motion at a uniform rate."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -76,7 +75,8 @@ class Clip:
         if not self.root_motion:
             return RootDelta()
         if self.loop and self._last > 0:
-            loops = math.floor(end / self.duration) - math.floor(start / self.duration)
+            # By the division that `position` has the rest of, or a whole cycle is lost at its end.
+            loops = round(end * self.rate // self._last - start * self.rate // self._last)
             there = self._place(end)
             return self._place(start).to(self.cycle.repeat(loops).then(there) if loops else there)
         return self._place(start).to(self._place(end))

@@ -56,6 +56,16 @@ def test_travel_adds_up_over_loops(walker, a, b, c):
     assert close(clip.travel(a, b).then(clip.travel(b, c)), clip.travel(a, c))
 
 
+@pytest.mark.parametrize("begin", [0.0, 0.1, 0.3, 0.7])
+def test_no_cycle_is_lost_where_a_frame_falls_on_the_end_of_a_loop(begin):
+    steps = np.zeros((47, 1, 3))
+    steps[:, 0, 2] = np.linspace(0.0, 1.0, 47)
+    clip = Clip("c", 60.0, Pose(steps, np.tile(rotations.IDENTITY, (47, 1, 1))), root_motion=True)
+    times = [begin + frame / 60 for frame in range(300)]
+    travelled = [clip.travel(time, time + 1e-4).z for time in times]
+    assert np.allclose(travelled, 60 / 46 * 1e-4)
+
+
 def test_sample_and_travel_together_plant_the_foot(walker, skeleton):
     clip = walker.clips["WalkRightMedium"]
     lands = (0.1 * 1 - 0.05) * clip.duration  # the lead of this clip in conftest
