@@ -6,6 +6,7 @@ velocity, is added to it and decays along a quintic. Bollo decays the length of 
 fixed axis; here the whole vector decays, so its velocity is continuous in every direction.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,13 +84,29 @@ class Inertialization:
 
     @staticmethod
     def begin(
-        old: tuple[Pose, Pose], new: tuple[Pose, Pose], step: float, length: float
+        old: tuple[Pose, Pose],
+        new: tuple[Pose, Pose],
+        step: float,
+        length: float,
+        parents: Sequence[int] | None = None,
     ) -> "Inertialization":
         """Return the transition of a length [s] between two motions.
 
-        `old` and `new` are two poses of each: at the switch, and `step` [s] later without it.
+        Parameters
+        ----------
+        old, new
+            Two poses of each: at the switch, and `step` [s] later without it.
+        step, length
+            [s].
+        parents
+            Of the joints, if rotations are in the character's frame: each joint then turns the same
+            way round as its parent, for the other way an arm would swing about.
         """
         turns, later = (_rotation_offset(a, b) for a, b in zip(old, new, strict=True))
+        far = np.flatnonzero(_norm(turns)[:, 0] > np.pi / 2) if parents else ()
+        for joint in far:
+            if parents[joint] >= 0:
+                turns[joint] = _nearer(turns[joint], turns[parents[joint]])
         spin = (_nearer(later, turns) - turns) / step
         # A cut inside a clip would otherwise be played on as a velocity, and whirl the joint about.
         spin *= np.minimum(1.0, _MAX_JOINT_SPEED / np.maximum(_norm(spin), 1e-9))

@@ -1,7 +1,7 @@
 """Skeletons and poses as arrays over joints."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -68,6 +68,22 @@ class Pose:
         for ancestors in skeleton.doubled_ancestors:
             matrices = matrices.take(ancestors, -3) @ matrices
         return matrices[..., :-1, :, :]
+
+    def turned_in_character(self, skeleton: "Skeleton") -> "Pose":
+        """Return the pose with rotations `character_from_joint` instead of `parent_from_joint`."""
+        world = np.broadcast_to(rotations.IDENTITY, (*self.rotations.shape[:-2], 1, 4))
+        turns = np.concatenate([self.rotations, world], axis=-2)
+        for ancestors in skeleton.doubled_ancestors:
+            turns = rotations.multiply(turns.take(ancestors, -2), turns)
+        return replace(self, rotations=turns[..., :-1, :])
+
+    def turned_in_parents(self, skeleton: "Skeleton") -> "Pose":
+        """Return what `turned_in_character` was made of."""
+        parents = np.array(skeleton.parents)
+        turns, children = self.rotations.copy(), parents >= 0
+        above = rotations.conjugate(turns[..., parents[children], :])
+        turns[..., children, :] = rotations.multiply(above, turns[..., children, :])
+        return replace(self, rotations=turns)
 
     def __getitem__(self, frames: "int | slice | NDArray[np.intp] | None") -> "Pose":
         """Return some of the poses, selected along the first leading axis; None adds an axis."""

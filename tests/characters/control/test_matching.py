@@ -1,6 +1,7 @@
 """A character that walks by motion matching, on a small database of the human's own loops."""
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -21,6 +22,8 @@ from cubeling.characters import (
 )
 from cubeling.characters.control.controllers.matching import MatchingController
 from cubeling.characters.control.layers import FOOT_LAYERS
+from cubeling.characters.motion.inertialization import Inertialization
+from cubeling.characters.skeleton import rotations
 from cubeling.characters.synthesis.matching.database import MotionDatabase, Playhead
 from cubeling.characters.synthesis.matching.matched_motion import MatchedMotion
 
@@ -131,6 +134,41 @@ def test_transitions_do_not_jump(human, database):
     around = slice(RATE // 2 - 3, RATE // 2 + 3)
     assert changes[around].max() < 2.0  # [m/s] a frame; the run itself has 1.9
     assert fastest < 4.0
+
+
+def test_hips_that_shake_under_a_steady_trunk_do_not_shake_the_trunk_of_another_clip(human):
+    """As in recordings, whose spines make up for the noise of the markers on the hips."""
+    walk, run = human.clips["Walk"], human.clips["Run"]
+    hips, spine = (human.anatomy.joints[part] for part in ("hips", "spine"))
+    noise = rotations.about("z", 0.05 * np.random.default_rng(0).standard_normal(len(walk)))
+    turns = walk.poses.rotations.copy()
+    turns[:, hips] = rotations.multiply(turns[:, hips], noise)
+    turns[:, spine] = rotations.multiply(rotations.conjugate(noise), turns[:, spine])
+    shaken = replace(walk, poses=replace(walk.poses, rotations=turns))
+    changes = []
+    for legs in (walk, shaken):
+        database = MotionDatabase.of([legs, run], human.skeleton, human.anatomy)
+        motion = MatchedMotion(database, Playhead(0, 0.2))
+        motion.match(0.0, lambda: {}, sudden=True)
+        motion._arms.jump(Playhead(1, 0.1), 0.0)
+        poses = [motion.sample(frame / RATE) for frame in range(RATE // 2)]
+        head = Pose.of_frames(poses).globals(human.skeleton)[:, human.anatomy.joints["head"]]
+        changes.append(np.abs(np.diff(head[:, :3, :3], 2, axis=0)).max())
+    assert changes[1] < 1.5 * changes[0]
+
+
+def test_arms_turn_the_same_way_round_as_the_joints_that_carry_them(human):
+    """A shoulder that turns by 100° and an elbow by as much turn the forearm by 200°, not −160°."""
+    arm = [human.anatomy.joints["left" + part] for part in ("UpperArm", "LowerArm")]
+    rest = human.skeleton.rest
+    bent = rest.rotations.copy()
+    bent[arm] = rotations.multiply(rotations.about("y", math.radians(100)), bent[arm])
+    poses = [replace(rest, rotations=turns) for turns in (bent, rest.rotations)]
+    old, new = (pose.turned_in_character(human.skeleton) for pose in poses)
+    passing = Inertialization.begin((old, old), (new, new), 0.1, 0.3, human.skeleton.parents)
+    turns = np.degrees(passing.rotations.offset[arm])
+    assert np.allclose(np.linalg.norm(turns, axis=1), [100.0, 200.0])
+    assert turns[0] @ turns[1] > 0.0
 
 
 def test_it_comes_to_a_target_and_stands(human, database):

@@ -29,6 +29,16 @@ def test_globals_equal_a_walk_down_the_tree(seed, joints):
     assert np.allclose(pose.globals(skeleton), expected, atol=1e-9, rtol=1e-6)
 
 
+@given(st.integers(0, 2**32 - 1), st.integers(1, 40))
+def test_rotations_in_the_characters_frame_are_those_of_globals_and_go_back(seed, joints):
+    skeleton, pose = random_tree(seed, joints, (3,))
+    unscaled = Pose(pose.translations, pose.rotations)
+    turned = unscaled.turned_in_character(skeleton)
+    expected = unscaled.globals(skeleton)[..., :3, :3]
+    assert np.allclose(rotations.to_matrix(turned.rotations), expected)
+    assert np.allclose(turned.turned_in_parents(skeleton).rotations, pose.rotations)
+
+
 def test_globals_take_any_leading_axes():
     skeleton, pose = random_tree(3, 12, (5, 2))
     together = pose.globals(skeleton)
