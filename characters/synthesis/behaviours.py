@@ -58,6 +58,9 @@ class Travel:
     acceleration: Array
     """Change of its speed ahead, (frames,) [m/s²]."""
 
+    on_all_feet: NDArray[np.bool_]
+    """Whether all feet are on the ground, (frames,)."""
+
     @staticmethod
     def of(library: MotionLibrary) -> "Travel":
         """Return what is seen in `WINDOW_S` before and after each frame.
@@ -87,17 +90,18 @@ class Travel:
             yaw / seconds,
             np.arctan2(np.sin(drift), np.cos(drift)),
             (ahead[1] - ahead[0]) / (seconds / 2) ** 2,
+            library.contacts.all(1),
         )
 
     @property
     def stands(self) -> NDArray[np.bool_]:
-        """Where it stands, (frames,)."""
-        return self.speed < STANDING_M_S
+        """Where it stands, (frames,): who kicks or steps on the spot does not."""
+        return (self.speed < STANDING_M_S) & self.on_all_feet
 
     @property
     def goes_ahead(self) -> NDArray[np.bool_]:
         """Where it moves to where it faces, (frames,)."""
-        return ~self.stands & (np.abs(self.drift) < MAX_DRIFT_RAD)
+        return (self.speed >= STANDING_M_S) & (np.abs(self.drift) < MAX_DRIFT_RAD)
 
     @property
     def is_steady(self) -> NDArray[np.bool_]:

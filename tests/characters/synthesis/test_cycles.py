@@ -109,6 +109,15 @@ def test_who_steps_aside_or_speeds_up_neither_walks_nor_runs(library: MotionLibr
     assert not Travel.of(faster).is_steady[30]
 
 
+def test_who_lifts_a_foot_on_the_spot_does_not_stand(library: MotionLibrary) -> None:
+    walk = _take(library, "Walk", 0, 120)
+    in_place = replace(walk, steps=np.zeros_like(walk.steps))
+    down = np.arange(120) < 50
+    kicking = replace(in_place, contacts=np.stack([np.ones(120, bool), down], axis=1))
+    assert np.array_equal(Travel.of(kicking).stands, down)
+    assert not Travel.of(kicking).goes_ahead.any()
+
+
 def test_only_frames_that_hold_a_speed_ahead_are_a_behaviour(library: MotionLibrary) -> None:
     walk = _take(library, "Walk", 0, 120)
     steps = walk.steps.mean(0) * np.ones((120, 1))
