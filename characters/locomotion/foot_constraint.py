@@ -108,8 +108,9 @@ class FootConstraint:
         self._last_stand = (0.0, 0.0)
         self._step_length = 0.0
         self._raised = 0.0  # height of the offset as last shown
-        self._ball: tuple[float, float, float] | None = None  # in the motion, one frame ago
+        self._before: FootPoints | None = None  # in the motion, one frame ago
         self._speed = 0.0  # of the ball in the motion [body heights/s]
+        self._least_speed = 0.0  # of ball or heel
         self._shown = [0.0] * 4  # x, z, yaw, y of the offset
         self._velocity = [0.0] * 4
         self._last_height = 0.0  # y of the offset one frame ago
@@ -121,16 +122,18 @@ class FootConstraint:
         """Advance by a time [s] to the present points of the motion."""
         self.step_time_left = max(self.step_time_left - elapsed, 0.0)
         self._age += elapsed
-        decayed, before = self._decay(), self._shown
+        decayed, shown = self._decay(), self._shown
         self._shown = [a + b for a, b in zip(self._goal(points), decayed, strict=True)]
         self.offset = FootOffset(*self._shown)
-        self._last_height = before[3]
+        self._last_height = shown[3]
         # Two updates at one time, as after a seek, must not divide by zero.
         if elapsed > 0.0:
-            moved = 0.0 if self._ball is None else math.dist(self._ball, points.ball)
-            self._speed = moved / (elapsed * self._body_height)
-            self._ball = points.ball
-            self._velocity = [(a - b) / elapsed for a, b in zip(self._shown, before, strict=True)]
+            before = self._before or points
+            moved = math.dist(before.ball, points.ball), math.dist(before.heel, points.heel)
+            self._speed = moved[0] / (elapsed * self._body_height)
+            self._least_speed = min(moved) / (elapsed * self._body_height)
+            self._before = points
+            self._velocity = [(a - b) / elapsed for a, b in zip(self._shown, shown, strict=True)]
 
     @property
     def age(self) -> float:
@@ -227,7 +230,9 @@ class FootConstraint:
         """Return whether a moving foot is near the ground, and near the end of a quick step."""
         low = points.height + self._raised < _MAX_LANDING_HEIGHT * self._body_height
         if self.step_time_left == 0.0:
-            return low
+            # While a jump between clips passes over, a foot may still swing that stands in the new
+            # one: held, it would stop dead.
+            return low and self._least_speed < _BRUSHING_SPEEDS[1]
         late = self.step_time_left < _EARLY_LANDING_SHARE * _QUICK_STEP_S
         return low and late and self.offset.length < _EARLY_LANDING_DISTANCE * self._body_height
 

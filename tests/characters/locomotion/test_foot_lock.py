@@ -107,6 +107,17 @@ def test_planted_feet_do_not_slide_at_any_frame_rate(human, rate):
     assert np.median(speeds[low]) < 2e-3  # [m/s]
 
 
+@pytest.mark.parametrize(("speed", "held"), [(0.5, True), (3.5, False)])
+def test_a_foot_that_still_swings_is_not_stopped_dead(human, speed, held):
+    """Its motion calls it down, as while a jump to a clip in which it stands passes over."""
+    lock = FootLockLayer(human).lock
+    assert lock is not None
+    for number in range(30):  # the first frame holds both
+        place = RootDelta(z=speed * number / FRAME_RATE)
+        lock.apply(human.skeleton.rest, place, [number == 29] * 2, False, 1 / FRAME_RATE)
+    assert lock.feet[0].held == held
+
+
 def test_only_a_foot_that_bends_at_its_toes_is_lowered_to_their_joint(human):
     """A stiff foot stands on its tip when the joint of its toes is above the ground."""
     joints = np.arange(len(human.skeleton))
