@@ -24,7 +24,8 @@ slide
 jump
     Largest change of velocity of hips, knees, ankles, elbows and wrists from one frame to the next,
     before the feet are held, as a multiple of the largest in the clips that are walked with; then
-    the same but for one frame in a thousand, as recordings have glitches, such as hands that leap.
+    the same but for one frame in a thousand, as recordings have glitches, such as hands that leap;
+    and that with the feet held.
 ms
     Time of a frame with all layers: the median, and the longest.
 
@@ -341,15 +342,19 @@ def _add_rows(
     leans = [lean_deg(character, each) for each in clips]
     if first:
         every = np.concatenate(clips)
-        own = f"{lean_deg(character, every):.1f}, {max(leans):.1f}"
-        table.add_row(names[0], "clips", "", "", "", own, f"{beyond(character, every):.1f}")
+        leaned = f"{lean_deg(character, every):.1f}, {max(leans):.1f}"
+        table.add_row(names[0], "clips", "", "", "", leaned, f"{beyond(character, every):.1f}")
     seen = film(character, controller, rounds)
     found = [each for pair in answers(seen).values() for each in pair]
     runs = settling(seen)
     scaled = BODY_HEIGHT_M / character.height
     own_jumps = [velocity_jumps(each[:, joints_of(character)] * scaled) for each in clips]
-    jumps = velocity_jumps(seen.before_layers)
-    ratios = [np.quantile(jumps, q) / np.quantile(np.concatenate(own_jumps), q) for q in (1, 0.999)]
+    jumps, held = velocity_jumps(seen.before_layers), velocity_jumps(seen.joints)
+    own = np.concatenate(own_jumps)
+    ratios = [
+        np.quantile(each, share) / np.quantile(own, share)
+        for each, share in ((jumps, 1.0), (jumps, 0.999), (held, 0.999))
+    ]
     lean, slide = lean_deg(character, seen.positions), measure(seen.take).mean
     table.add_row(
         "",
@@ -360,7 +365,7 @@ def _add_rows(
         f"{lean:.1f}",
         f"{beyond(character, seen.positions):.1f}",
         f"{slide:.1f}",
-        f"{ratios[0]:.2f}, {ratios[1]:.2f}",
+        ", ".join(f"{ratio:.2f}" for ratio in ratios),
         f"{np.median(seen.milliseconds):.2f}, {seen.milliseconds.max():.0f}",
     )
     beyond_clips = slide >= MAX_SLIDE_MM_S or ratios[0] > MAX_JUMP or lean > max(leans)
