@@ -117,6 +117,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.feet
 	$(BIN)/python -m tests.bench.matching
 	$(BIN)/python -m tests.bench.controllers
+	$(BIN)/python -m tests.bench.coherence
 	$(BIN)/python -m tests.bench.idle
 	$(BIN)/python -m tests.bench.idle_study
 	$(BIN)/python -m tests.bench.standing

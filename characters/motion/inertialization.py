@@ -88,7 +88,7 @@ class Inertialization:
         new: tuple[Pose, Pose],
         step: float,
         length: float,
-        parents: Sequence[int] | None = None,
+        parents: Sequence[int] = (),
     ) -> "Inertialization":
         """Return the transition of a length [s] between two motions.
 
@@ -103,8 +103,7 @@ class Inertialization:
             way round as its parent, for the other way an arm would swing about.
         """
         turns, later = (_rotation_offset(a, b) for a, b in zip(old, new, strict=True))
-        far = np.flatnonzero(_norm(turns)[:, 0] > np.pi / 2) if parents else ()
-        for joint in far:
+        for joint in np.flatnonzero(_norm(turns)[:, 0] > np.pi / 2).tolist() if parents else ():
             if parents[joint] >= 0:
                 turns[joint] = _nearer(turns[joint], turns[parents[joint]])
         spin = (_nearer(later, turns) - turns) / step

@@ -90,7 +90,7 @@ class Travel:
             yaw / seconds,
             np.arctan2(np.sin(drift), np.cos(drift)),
             (ahead[1] - ahead[0]) / (seconds / 2) ** 2,
-            library.contacts.all(1),
+            np.asarray(library.contacts.all(1)),
         )
 
     @property

@@ -31,6 +31,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
@@ -91,7 +92,7 @@ def without_slow(values: Array) -> Array:
     return smooth
 
 
-def phase_differences(hands: Array, feet: Array, walking: Array) -> Array:
+def phase_differences(hands: Array, feet: Array, walking: NDArray[np.bool_]) -> Array:
     """Return the phase of one swing after the other's where a body walks, (n,) [°]."""
     signals = [_analytic(without_slow(each)) for each in (hands, feet)]
     apart = np.degrees(np.angle(signals[0] * np.conj(signals[1])))
@@ -101,7 +102,7 @@ def phase_differences(hands: Array, feet: Array, walking: Array) -> Array:
     return found
 
 
-def _analytic(values: Array) -> "np.ndarray[tuple[int], np.dtype[np.complex128]]":
+def _analytic(values: Array) -> NDArray[np.complex128]:
     """Return the analytic signal of values (n,): its angle is their phase (D. Gabor, 1946)."""
     spectrum = np.fft.fft(values)
     spectrum[len(values) // 2 + 1 :] = 0.0
@@ -124,8 +125,8 @@ def momenta(character: Character, at: Array, heading: Array) -> tuple[Array, Arr
     masses = np.concatenate([mass for _, mass in groups])
     centre = (every * masses[:, None]).sum(1, keepdims=True) / masses.sum()
     found = []
-    for middles, mass in groups[1:]:
-        arm = middles - centre
+    for centres, mass in groups[1:]:
+        arm = centres - centre
         velocity = np.gradient(arm, axis=0) * FRAME_RATE
         moment = arm[..., 2] * velocity[..., 0] - arm[..., 0] * velocity[..., 2]
         found.append(without_slow((moment * mass).sum(1)))
