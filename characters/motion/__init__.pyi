@@ -69,6 +69,7 @@ from cubeling.characters.synthesis.graphs.building import (
     standard_graph as standard_graph,
 )
 from cubeling.characters.synthesis.graphs.graph import (
+    PRINTED_COSTS as PRINTED_COSTS,
     EdgeCosts as EdgeCosts,
     MotionGraph as MotionGraph,
 )
@@ -112,5 +113,17 @@ from cubeling.characters.synthesis.transitions.evaluation import (
     TransitionSummary as TransitionSummary,
     graph_requests as graph_requests,
     merge_answers as merge_answers,
+    part_outcome as part_outcome,
 )
 from cubeling.characters.synthesis.transitions.playback import path_clip as path_clip
+from cubeling.characters.synthesis.transitions.progressive import (
+    PRINTED_SEARCH as PRINTED_SEARCH,
+    SearchSettings as SearchSettings,
+    TransitionPlanner as TransitionPlanner,
+    whole_body_transition as whole_body_transition,
+)
+from cubeling.characters.synthesis.transitions.transition import (
+    PartMove as PartMove,
+    PartStreams as PartStreams,
+    Transition as Transition,
+)

@@ -44,6 +44,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.app.workshop.motion_graphs.summary import bootstrap_interval
 from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.synthesis.idle.database import IdleDatabase
@@ -54,7 +55,6 @@ from cubeling.characters.synthesis.idle.recordings import (
     find_rests,
     read_standing,
 )
-from tests.bench.intervals import bootstrap_interval
 
 Array = NDArray[np.float64]
 

@@ -9,6 +9,9 @@ four clips: a walk, a run, a walk with long steps and a slow walk, by one actor 
 method has the least threshold that joins all four clips: the standard graph its own, the part
 graphs (SP4b) one that is shared out by weight (M2.2), or one for each part. Intervals are 95 % of
 the bootstrap over the choices. Times are of the processor, so that other programs do not count.
+
+`--tables` prints tables 3.2 to 3.4 instead: what the thesis prints, what its own way of building
+and searching gives, and what ours does, with intervals over the choices.
 """
 
 import argparse
@@ -24,8 +27,15 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
+from cubeling.app.workshop.motion_graphs.page import write_page
 from cubeling.app.workshop.motion_graphs.recordings import fit_recording
-from cubeling.app.workshop.motion_graphs.tables import SPLIT_PROFILES
+from cubeling.app.workshop.motion_graphs.summary import (
+    TITLES,
+    bootstrap_interval,
+    printed_value,
+    summarize,
+)
+from cubeling.app.workshop.motion_graphs.tables import SPLIT_PROFILES, measure
 from cubeling.characters import Character
 from cubeling.characters.retargeting import load_recording
 from cubeling.characters.synthesis.distances import thesis_distance
@@ -40,7 +50,6 @@ from cubeling.characters.synthesis.transitions.comparison import (
 )
 from cubeling.characters.synthesis.transitions.evaluation import graph_requests, merge_answers
 from cubeling.characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
-from tests.bench.intervals import bootstrap_interval
 
 CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
 FRAMES, MAX_GRAPH_S, MAX_MEMORY_MB, MAX_QUERY_MS = 6600, 10.0, 500.0, 5.0
@@ -162,12 +171,16 @@ LIMITS = {
 """The bar of M3; where an ordering does not come out, the table says so."""
 
 
-def orderings(console: Console, choices: int, seed: int) -> None:
-    """Print the orderings over random choices of clips."""
+def choose(choices: int, seed: int) -> list[tuple[str, ...]]:
+    """Return random choices of four recordings."""
     rng = np.random.default_rng(seed)
-    names = [tuple(str(rng.choice(kind)) for kind in KINDS.values()) for _ in range(choices)]
+    return [tuple(str(rng.choice(kind)) for kind in KINDS.values()) for _ in range(choices)]
+
+
+def orderings(console: Console, names: list[tuple[str, ...]]) -> None:
+    """Print the orderings over choices of clips."""
     found = [evaluate(each) for each in track(names, "choices of clips", console=console)]
-    table = Table(title=f"orderings of M3 over {choices} choices of four clips")
+    table = Table(title=f"orderings of M3 over {len(names)} choices of four clips")
     for heading in ("", "mean", "95 % of the mean", "least", "most", "bar", "comes out in"):
         table.add_column(heading, no_wrap=True)
     for name in found[0].values:
@@ -183,6 +196,40 @@ def orderings(console: Console, choices: int, seed: int) -> None:
     console.print(table)
     for choice in found:
         console.print("  " + ", ".join(choice.clips), style="dim")
+
+
+COLORS = {2: "red", 3: "yellow", 4: "green"}
+"""Colour of a cell of table 3.2 by the number of clips that are joined."""
+
+
+def printed_tables(console: Console, names: list[tuple[str, ...]], output: Path | None) -> None:
+    """Print tables 3.2 to 3.4 over choices of clips: as printed, and in our own way."""
+    choices = []
+    for each in track(names, "tables", console=console):
+        choices.append(measure(library(each), STRIDE, curves=False))
+    found = summarize(choices)
+    for name, title in TITLES.items():
+        table = Table(title=f"{title}, over {len(choices)} choices of four clips")
+        for heading in ("", "", "thesis", *found.ways):
+            table.add_column(heading)
+        for key, cells in found.cells.items():
+            if key[0] == name:
+                shown = []
+                for estimate in (cells[way] for way in found.ways):
+                    color = COLORS.get(estimate.joined or 0, "default")
+                    shown.append(f"[{color}]{estimate.text}[/]  [dim]{estimate.spread}[/]")
+                table.add_row(key[1], key[2], printed_value(key), *shown)
+        console.print(table)
+    console.print("table 3.2: red, yellow and green where two, three and four clips are joined")
+    actors = [len({name[:2] for name in each}) for each in names]
+    for what, wanted in (("of one actor", {1}), ("of several actors", {2, 3, 4})):
+        own = [choice for choice, count in zip(choices, actors, strict=True) if count in wanted]
+        for way in found.ways if own else ():
+            console.print(f"{len(own)} choices {what}, {summarize(own).order(way)}")
+    for way in found.ways:
+        console.print(f"all {len(choices)} choices, {found.order(way)}")
+    if output:
+        write_page(found, output)
 
 
 def speed(console: Console, count: int) -> bool:
@@ -284,15 +331,23 @@ def main() -> None:
         "--requests", type=int, default=1000, help="requests of the large graph; 0 leaves it out"
     )
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--tables", action="store_true", help="only tables 3.2 to 3.4, as printed and ours"
+    )
+    parser.add_argument("--page", type=Path, help="an .html file for these tables, too")
     options = parser.parse_args()
     console = Console(width=130)
     if not CMU.is_dir():
         console.print(f"no recordings at {CMU}: nothing to measure")
         return
+    names = choose(options.choices, options.seed)
+    if options.tables:
+        printed_tables(console, names, options.page)
+        return
     good = not options.requests or speed(console, options.requests)
     joint_weights(console)
-    if options.choices:
-        orderings(console, options.choices, options.seed)
+    if names:
+        orderings(console, names)
     sys.exit(not good)
 
 

@@ -21,6 +21,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.app.workshop.motion_graphs.summary import bootstrap_interval
 from cubeling.characters import Character, Pose
 from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
 from cubeling.characters.body.capsules import CapsuleBody
@@ -29,7 +30,6 @@ from cubeling.characters.body.self_collision import SafeRanges
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
-from tests.bench.intervals import bootstrap_interval
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 GESTURES = ("wave", "cheer", "jump", "nod", "shake")

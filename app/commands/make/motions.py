@@ -55,6 +55,14 @@ def build(
             help="Largest distance of joined frames; default: the least that joins all clips."
         ),
     ] = None,
+    as_printed: Annotated[
+        bool,
+        typer.Option(
+            "--as-printed",
+            help="As the thesis prints it: jumps join the look-alikes themselves, and the parts "
+            "share one threshold by their weights.",
+        ),
+    ] = False,
     skeleton: Annotated[
         Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
     ] = None,
@@ -95,6 +103,7 @@ def build(
             distance,
             threshold,
             lambda part: bar.update(comparing, description=f"comparing {part}"),
+            as_printed,
         )
         describe(console, stored)
     save_graph(stored, target)
@@ -135,10 +144,64 @@ def show(
 
 
 @app.command()
+def transition(
+    graph: Annotated[Path, typer.Argument(help="A file of cubeling motions build.")],
+    origin: Annotated[str, typer.Argument(help="The clip that plays.")],
+    target: Annotated[str, typer.Argument(help="The clip that is asked for.")],
+    output: PlotOption = None,
+    overwrite: OverwriteOption = False,
+    at: Annotated[
+        float | None,
+        typer.Option(help="When in the clip it is asked for [s]; default: in its middle."),
+    ] = None,
+    as_printed: Annotated[
+        bool,
+        typer.Option(
+            "--as-printed", help="Show what the search finds as the thesis prints it, too."
+        ),
+    ] = False,
+) -> None:
+    """Show a transition: when each part of the body leaves, and which clip it plays.
+
+    The plot has the whole body, and the parts below. It needs matplotlib: pip install matplotlib
+
+    Example: cubeling motions transition my.graph walk run --at 0.5 -o walk-run.svg
+    """
+    if output is not None:
+        chosen_output(output, "", "plot", PLOT_SUFFIXES, overwrite)
+    from cubeling.app.workshop.motion_graphs.transition import clips_on_the_way, find_transitions
+    from cubeling.characters.motion import load_graph
+
+    stored = load_graph(graph)
+    found = find_transitions(stored, origin, target, at, as_printed)
+    console = Console()
+    for each in found:
+        rows = Table(title=each.summary, title_justify="left", title_style="bold", box=SIMPLE_HEAD)
+        for heading in ("part", "leaves", "arrives", "frames", "slower", "by way of"):
+            rows.add_column(
+                heading, justify="left" if heading in ("part", "by way of") else "right"
+            )
+        for name, move in zip(each.parts, each.transition.moves, strict=True):
+            between = ", ".join(clips_on_the_way(stored.library, move))
+            times = f"{move.departure}", f"{move.arrival}", f"{move.length}"
+            rows.add_row(name, *times, f"{move.scaling - 1:+.0%}", escape(between))
+        console.print(rows)
+    if output is None:
+        return
+    with needs_matplotlib():
+        from cubeling.app.workshop.motion_graphs.timeline import save_timeline
+    save_timeline(output, stored.library, found, f"{origin} → {target}")
+    console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+
+
+@app.command()
 def tables(
     clips: Annotated[
         list[str],
-        typer.Argument(help="Four motions: a walk, a run, a walk with long steps, a slow walk."),
+        typer.Argument(
+            help="Four motions: a walk, a run, a walk with long steps, a slow walk; or several "
+            "choices of four."
+        ),
     ],
     output: Annotated[
         Path | None,
@@ -152,13 +215,22 @@ def tables(
             min=1, help="Frames from one request to the next; each asks for every other clip."
         ),
     ] = 8,
+    as_printed: Annotated[
+        bool,
+        typer.Option(
+            "--as-printed/--ours-only",
+            help="Whether to search as the thesis prints it, too; it takes four times as long.",
+        ),
+    ] = True,
     skeleton: Annotated[
         Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
     ] = None,
 ) -> None:
     """Make tables 3.2 to 3.4 and the curves of Fernández-Baena's thesis from four clips.
 
-    Printed values stand beside ours. It takes a minute or two, and needs matplotlib.
+    Printed values stand beside those that the printed search gives, and beside ours. Several
+    choices of four clips give means with 95 % intervals. Each takes some minutes. It needs
+    matplotlib.
 
     Example: cubeling motions tables walk.amc run.amc long.amc slow.amc -o tables.html
     """
@@ -166,18 +238,43 @@ def tables(
     with needs_matplotlib():
         from cubeling.app.workshop.motion_graphs.page import write_page
     from cubeling.app.workshop.motion_graphs.recordings import clip_names, gather
-    from cubeling.app.workshop.motion_graphs.tables import make_tables
+    from cubeling.app.workshop.motion_graphs.summary import summarize
+    from cubeling.app.workshop.motion_graphs.tables import AS_PRINTED, OURS, measure
     from cubeling.characters import Character
     from cubeling.characters.model import with_root_joint
     from cubeling.characters.motion import DEFAULT_RATE_HZ, MotionLibrary
 
+    names = clip_names(clips)
+    if len(names) % 4:
+        raise AppError(
+            f"{quantity(len(names), 'clip')}: give four, a walk, a run, long steps and a slow "
+            "walk, or several choices of four"
+        )
     body = with_root_joint(Character.load(character))
     console = Console()
+    choices = []
     with console.status("reading") as status:
-        found = gather(clip_names(clips), body, skeleton)
-        library = MotionLibrary.of(found, body.skeleton, body.anatomy, DEFAULT_RATE_HZ)
-        made = make_tables(library, stride, lambda what: status.update(what))
-    table = write_page(made, target)
+        libraries = [
+            MotionLibrary.of(
+                gather(names[first : first + 4], body, skeleton),
+                body.skeleton,
+                body.anatomy,
+                DEFAULT_RATE_HZ,
+            )
+            for first in range(0, len(names), 4)
+        ]
+        for number, library in enumerate(libraries, 1):
+            where = f"choice {number} of {len(libraries)}, " if len(libraries) > 1 else ""
+
+            def report(what: str, where: str = where) -> None:
+                status.update(f"{where}{what}")
+
+            ways = (AS_PRINTED, OURS) if as_printed else (OURS,)
+            choices.append(measure(library, stride, ways, not choices, report))
+    summary = summarize(choices)
+    table = write_page(summary, target)
+    for way in summary.ways:
+        console.print(summary.order(way), highlight=False)
     console.print(
         f"[bold]{escape(str(target))}[/] and [bold]{escape(str(table))}[/] are written",
         soft_wrap=True,
@@ -193,7 +290,8 @@ def describe(console: Console, stored: StoredGraph) -> None:
     whole, parts = standard_graph(stored), part_graphs(stored)
     console.print(
         f"{quantity(len(library.names), 'clip')}, {quantity(len(library), 'frame')} at "
-        f"{library.rate:g} Hz ({len(library) / library.rate:.1f} s), compared by {stored.distance}",
+        f"{library.rate:g} Hz ({len(library) / library.rate:.1f} s), compared by {stored.distance}"
+        f"{', as printed' if stored.rule == 'same' else ''}",
         highlight=False,
     )
     console.print(_clips(library, whole))

@@ -1,13 +1,18 @@
-"""The tables and curves of chapter 3.5 of the thesis, from four clips: computed, not yet shown."""
+"""The tables and curves of chapter 3.5 of the thesis, measured on four clips: not yet shown."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
 from cubeling.app.counted import quantity
+from cubeling.app.workshop.motion_graphs.printed import CRITICAL, TABLE_3_2
 from cubeling.characters import CharacterError
 from cubeling.characters.motion import (
+    PRINTED_COSTS,
+    PRINTED_SEARCH,
     Answers,
     Array,
     Comparison,
@@ -15,70 +20,69 @@ from cubeling.characters.motion import (
     MotionGraph,
     MotionLibrary,
     PartGraphs,
-    Requests,
+    SearchSettings,
     SplitComparison,
+    TransitionPlanner,
     TransitionSummary,
     common_requests,
     graph_requests,
     merge_answers,
+    part_outcome,
 )
-
-# Tables 3.2, 3.3 and 3.4 as the thesis prints them (Fernández-Baena 2015, chapter 3.5).
-CRITICAL = {"SMG": 0.165, "BPMG": 0.105}
-"""The least printed threshold at which all four clips are joined."""
-
-TABLE_3_2 = {
-    0.06: ((19.99, 14.24), (17.24, 4.34)),
-    0.075: ((19.65, 13.61), (17.28, 4.42)),
-    0.09: ((18.95, 13.30), (17.27, 4.41)),
-    0.105: ((18.43, 12.92), (17.30, 4.40)),
-    0.12: ((18.18, 12.74), (17.30, 4.37)),
-    0.165: ((18.20, 12.53), (17.30, 4.37)),
-}
-"""By threshold: TBF and response of SMG, then of BPMG [frames at 60 Hz]."""
-
-TABLE_3_3 = {
-    "SMG": {
-        (0, 1): (10.71, 6.35), (0, 2): (3.68, 0.43), (0, 3): (3.40, 0.63),
-        (1, 0): (4.26, 0.84), (1, 2): (5.26, 0.84), (1, 3): (7.26, 0.84),
-        (2, 0): (5.71, 2.52), (2, 1): (15.86, 11.50), (2, 3): (5.23, 2.91),
-        (3, 0): (3.73, 0.01), (3, 1): (25.00, 18.23), (3, 2): (2.86, 0.00),
-    },
-    "BPMG": {
-        (0, 1): (5.91, 0.00), (0, 2): (3.90, 0.00), (0, 3): (2.61, 0.02),
-        (1, 0): (2.41, 0.00), (1, 2): (4.97, 0.00), (1, 3): (3.29, 0.00),
-        (2, 0): (5.11, 0.06), (2, 1): (9.54, 1.53), (2, 3): (3.95, 0.15),
-        (3, 0): (3.40, 0.00), (3, 1): (9.40, 0.01), (3, 2): (3.10, 0.00),
-    },
-}  # fmt: skip
-"""LM and LM response from clip to clip [frames]."""
-
-TABLE_3_4 = {
-    (0, 1): "SP4b", (0, 2): "SP4b", (0, 3): "SP4b",
-    (1, 0): "SP3a", (1, 2): "SP3a", (1, 3): "SP3a",
-    (2, 0): "SP4b", (2, 1): "SP3a", (2, 3): "SP2",
-    (3, 0): "SP4b", (3, 1): "SP3a", (3, 2): "SP2",
-}  # fmt: skip
-"""The best split profile from clip to clip."""
-
 
 SPLIT_PROFILES = ("SP2", "SP3a", "SP3b", "SP4a", "SP4b", "SP5")
 CURVE_FACTORS = np.geomspace(0.02, 4.0, 12)
 """Thresholds of the curves, as multiples of the standard graph's critical one."""
 
+INNER_TARGETS = 6
+"""Frames of a clip that are asked for from inside it, in the diagonal of table 3.4."""
+
+Key: TypeAlias = tuple[str, str, str]
+"""Table, row and column of a value."""
+
+Value: TypeAlias = float | str | None
+"""A number, the name of a profile, or nothing where no request was answered."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """How graphs are built, searched, and measured."""
+
+    name: str
+
+    costs: EdgeCosts
+    """Which jumps there are."""
+
+    search: SearchSettings
+    """How the parts find their ways."""
+
+    printed: bool
+    """Whether it is that of the thesis: table 3.3 has the shortest durations of all targets (eq.
+    3.4) instead of those of the cheapest transitions, and only answers in the window count."""
+
+
+AS_PRINTED = Way("as printed", PRINTED_COSTS, PRINTED_SEARCH, printed=True)
+OURS = Way("ours", EdgeCosts(), SearchSettings(), printed=False)
+
 
 @dataclass
-class Tables:
-    """Rows of a table file, and the curves."""
+class Measurement:
+    """What was measured on one choice of four clips."""
 
     clips: tuple[str, ...]
     """C1 to C4: walk, run, long steps, slow."""
 
-    critical: dict[str, float]
-    """The least threshold that joins all clips, by method."""
+    critical: dict[str, float] = field(default_factory=dict)
+    """The least threshold that joins all clips, by method, of the last of the ways."""
 
-    rows: list[tuple[str, str, str, str, str]] = field(default_factory=list)
-    """Table, row, column, printed value, our value."""
+    values: dict[str, dict[Key, Value]] = field(default_factory=dict)
+    """What each way gives, by its name."""
+
+    joined: dict[str, dict[Key, int]] = field(default_factory=dict)
+    """Of table 3.2: how many clips are joined, which is the colour of a cell."""
+
+    pairs: dict[str, tuple[int, int, int]] = field(default_factory=dict)
+    """Of table 3.3: in how many pairs the parts are shorter, and sooner, and how many there are."""
 
     connectivity: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     """Thresholds and shares of frames, by profile."""
@@ -86,15 +90,14 @@ class Tables:
     cost: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     """Thresholds and mean costs of a transition, by profile; only where clips are joined."""
 
-    def add(self, table: str, row: str, column: str, printed: object, ours: object) -> None:
-        """Add a value beside the printed one."""
-        texts = (f"{v:.2f}" if isinstance(v, float) else str(v) for v in (printed, ours))
-        self.rows.append((table, row, column, *texts))  # type: ignore[arg-type]
 
-
-def make_tables(
-    library: MotionLibrary, stride: int, progress: Callable[[str], None] = lambda what: None
-) -> Tables:
+def measure(
+    library: MotionLibrary,
+    stride: int,
+    ways: Sequence[Way] = (AS_PRINTED, OURS),
+    curves: bool = True,
+    progress: Callable[[str], None] = lambda what: None,
+) -> Measurement:
     """Return the tables of four clips: a walk, a run, a walk with long steps, a slow walk.
 
     Parameters
@@ -103,6 +106,10 @@ def make_tables(
         The four clips, in this order.
     stride
         Frames from one request to the next; each asks for every other clip.
+    ways
+        The ways to compare.
+    curves
+        Whether to measure the curves too, of the last way.
     progress
         Called with what is computed next.
 
@@ -116,107 +123,187 @@ def make_tables(
             f"{quantity(len(library.names), 'clip')}: give four, a walk, a run, long steps and a "
             "slow walk"
         )
-    progress("critical thresholds")
-    whole = Comparison(library, EdgeCosts())
-    splits = {profile: whole.split(profile) for profile in SPLIT_PROFILES}
-    critical = {"SMG": whole.standard_threshold}
-    critical |= {profile: split.threshold for profile, split in splits.items()}
-    tables = Tables(library.names, critical)
-    progress("table 3.2")
-    _table_3_2(tables, whole, splits["SP4b"], stride)
-    progress("table 3.3")
-    _table_3_3(tables, whole, splits["SP4b"], stride)
-    progress("table 3.4")
-    _table_3_4(tables, library, stride)
-    for profile in ("SMG", *SPLIT_PROFILES):
+    found = Measurement(library.names)
+    for way in ways:
+        progress(f"critical thresholds, {way.name}")
+        whole = Comparison(library, way.costs)
+        splits = {profile: whole.split(profile) for profile in SPLIT_PROFILES}
+        found.critical = {"SMG": whole.standard_threshold}
+        found.critical |= {profile: split.threshold for profile, split in splits.items()}
+        found.values[way.name], found.joined[way.name] = {}, {}
+        for table, make in (("3.2", _table_3_2), ("3.3", _table_3_3), ("3.4", _table_3_4)):
+            progress(f"table {table}, {way.name}")
+            make(found, way, whole, splits["SP4b"], stride)
+    for profile in ("SMG", *SPLIT_PROFILES) if curves else ():
         progress(f"curves of {profile}")
-        _curves(tables, whole, splits.get(profile), profile, 2 * stride)
-    return tables
+        _curves(found, whole, splits.get(profile), profile, 2 * stride)
+    return found
 
 
-def _answers(
-    whole: Comparison, split: SplitComparison | None, threshold: float, stride: int
-) -> Answers:
-    """Return the answers of the standard graph, or of part graphs, at a threshold."""
-    if split is None:
-        graph = whole.standard(threshold)
-        return whole.answers(graph, graph_requests(whole.library, graph.kept, stride))
-    graphs = split.graphs(threshold)
-    return split.answers(graphs, graph_requests(whole.library, graphs.kept, stride))
-
-
-def _table_3_2(tables: Tables, whole: Comparison, split: SplitComparison, stride: int) -> None:
+def _table_3_2(
+    found: Measurement, way: Way, whole: Comparison, split: SplitComparison, stride: int
+) -> None:
     """Find TBF and response, at the printed multiples of the critical threshold."""
-    for st, printed in TABLE_3_2.items():
-        methods = (("SMG", None, "SMG"), ("BPMG", split, "SP4b"))
-        for (method, parts, name), values in zip(methods, printed, strict=True):
-            threshold = st / CRITICAL[method] * tables.critical[name]
-            row = f"{st:g} (ours {threshold:.3f})"
+    values, library = found.values[way.name], whole.library
+    known: dict[tuple[int, ...], Answers] = {}  # a graph of as many edges is the same one
+    for st in TABLE_3_2:
+        for method, profile in (("SMG", "SMG"), ("BPMG", "SP4b")):
+            threshold = st / CRITICAL[method] * found.critical[profile]
+            joined, answers = 0, Answers()
             try:
-                answers = _answers(whole, parts, threshold, stride)
+                graph = whole.standard(threshold) if method == "SMG" else split.graphs(threshold)
             except CharacterError:  # nothing is joined yet
-                answers = {}
+                pass
+            else:
+                joined = len(graph.joined_clips)
+                asked = graph_requests(library, graph.kept, stride)
+                if isinstance(graph, MotionGraph):
+                    answers = whole.answers(graph, asked)
+                else:
+                    size = tuple(len(each.edges) for each in graph.graphs)
+                    if size not in known:
+                        known[size] = split.answers(graph, asked, way.search)
+                    answers = known[size]
             both = merge_answers(answers)
-            ours = (both.duration, both.response) if both.outcomes else ("–", "–")
-            for column, value, own in zip(("TBF", "response"), values, ours, strict=True):
-                tables.add("3.2", row, f"{method} {column}", value, own)
+            row = f"{st:g}"
+            for column, value in zip(("TBF", "response"), _means(way, both), strict=True):
+                values["3.2", row, f"{method} {column}"] = value
+                found.joined[way.name]["3.2", row, f"{method} {column}"] = joined
+            values["3.2", row, f"{method} st"] = threshold
+            values["3.2", row, f"{method} clips"] = float(joined)
+            if method == "BPMG":
+                values["3.2", row, "BPMG no answer [%]"] = _unanswered(way, both)
 
 
-def _table_3_3(tables: Tables, whole: Comparison, split: SplitComparison, stride: int) -> None:
-    """Find duration and response from clip to clip, each method at its critical threshold."""
-    standard = whole.standard(tables.critical["SMG"])
-    graphs = split.graphs(tables.critical["SP4b"])
+def _means(way: Way, answers: TransitionSummary) -> tuple[Value, Value]:
+    """Return the mean duration and response of what counts as an answer."""
+    counted = answers.where(answers.answered) if way.printed else answers
+    return (counted.duration, counted.response) if counted.outcomes else (None, None)
+
+
+def _unanswered(way: Way, answers: TransitionSummary) -> Value:
+    """Return the share of requests without an answer [%]; our own search answers all."""
+    if not answers.outcomes:
+        return None
+    return 100.0 * float(1.0 - answers.answered.mean()) if way.printed else 0.0
+
+
+def _table_3_3(
+    found: Measurement, way: Way, whole: Comparison, split: SplitComparison, stride: int
+) -> None:
+    """Find duration and response from clip to clip, each method at its critical threshold.
+
+    Only requests that both methods answer are compared.
+    """
+    values = found.values[way.name]
+    standard = whole.standard(found.critical["SMG"])
+    graphs = split.graphs(found.critical["SP4b"])
     asked = common_requests(standard, graphs, stride)
-    found = {"SMG": whole.answers(standard, asked), "BPMG": split.answers(graphs, asked)}
-    for method, printed in TABLE_3_3.items():
-        for (origin, target), (duration, response) in printed.items():
-            own = found[method].get((origin, target), TransitionSummary(()))
-            row = f"C{origin + 1} → C{target + 1}"
-            ours = (own.duration, own.response) if own.outcomes else ("–", "–")
-            tables.add("3.3", row, f"{method} duration", duration, ours[0])
-            tables.add("3.3", row, f"{method} response", response, ours[1])
+    if way.printed:
+        own, parts = whole.shortest(standard, asked), split.shortest(graphs, asked, way.search)
+    else:
+        own, parts = whole.answers(standard, asked), split.answers(graphs, asked, way.search)
+    shorter = sooner = pairs = 0
+    for (origin, target), answers in parts.items():
+        row = f"C{origin + 1} → C{target + 1}"
+        both = answers.answered if way.printed else np.ones(len(answers.outcomes), bool)
+        pair = own[origin, target].where(both), answers.where(both)
+        for method, each in zip(("SMG", "BPMG"), pair, strict=True):
+            for column, value in zip(("duration", "response"), _means(way, each), strict=True):
+                values["3.3", row, f"{method} {column}"] = value
+        values["3.3", row, "BPMG no answer [%]"] = _unanswered(way, answers)
+        if both.any():
+            pairs += 1
+            shorter += pair[1].duration < pair[0].duration
+            sooner += pair[1].response < pair[0].response
+    found.pairs[way.name] = shorter, sooner, pairs
 
 
-def _table_3_4(tables: Tables, library: MotionLibrary, stride: int) -> None:
+def _table_3_4(
+    found: Measurement, way: Way, whole: Comparison, split: SplitComparison, stride: int
+) -> None:
     """Find the best profile of each pair: graphs of both clips alone, at one threshold.
 
-    It is the least one at which any profile joins both. The largest connectivity wins (erratum 7),
-    then the shortest duration.
+    As printed that is the one which joins all four clips; in our own way, the least one at which
+    any profile joins both. Inside a clip it is the former. The largest connectivity wins (erratum
+    7), then what is answered, then the shortest duration.
     """
+    values = found.values[way.name]
     for origin in range(4):
-        for target in range(origin + 1, 4):
-            pair = Comparison(library.only((origin, target)), EdgeCosts())
+        for target in range(origin, 4):
+            clips = (origin,) if origin == target else (origin, target)
+            pair = Comparison(whole.library.only(clips), way.costs)
             splits = {profile: pair.split(profile) for profile in SPLIT_PROFILES}
-            least = min(split.threshold for split in splits.values())
-            found = {profile: split.graphs(least) for profile, split in splits.items()}
-            best = {}
-            for way in ((0, 1), (1, 0)):
+            threshold = found.critical["SP4b"]
+            if not way.printed and origin != target:
+                threshold = min(each.threshold for each in splits.values())
+            graphs: dict[str, PartGraphs | None] = {}
+            shared: dict[str, MotionGraph] = {}  # the paths in a part serve all of its profiles
+            for profile, each in splits.items():
+                try:
+                    own = each.graphs(threshold)
+                except CharacterError:  # it connects nothing
+                    graphs[profile] = None
+                    continue
+                named = zip(own.parts, own.graphs, strict=True)
+                same = tuple(shared.setdefault(part.name, graph) for part, graph in named)
+                graphs[profile] = PartGraphs(own.parts, same)
+            for here, there in {(0, len(clips) - 1), (len(clips) - 1, 0)}:
                 ranks = {
-                    name: _rank(splits[name], found[name], way, stride) for name in SPLIT_PROFILES
+                    profile: _rank(way, splits[profile], graphs[profile], (here, there), stride)
+                    for profile in SPLIT_PROFILES
                 }
-                best[way] = min(SPLIT_PROFILES, key=ranks.__getitem__)
-            for (a, b), name in best.items():
-                ends = (origin, target)[a], (origin, target)[b]
-                row = f"C{ends[0] + 1} → C{ends[1] + 1}"
-                tables.add("3.4", row, "best profile", TABLE_3_4[ends], name)
+                key = "3.4", f"C{clips[here] + 1}", f"C{clips[there] + 1}"
+                values[key] = min(SPLIT_PROFILES, key=ranks.__getitem__)
 
 
 def _rank(
-    split: SplitComparison, graphs: PartGraphs, way: tuple[int, int], stride: int
-) -> tuple[float, float]:
-    """Return what makes a profile worse: less connectivity, then a longer duration."""
-    asked = graph_requests(graphs.library, graphs.kept, stride)
-    own: Requests = {way: asked[way]} if way in asked else {}
-    both = merge_answers(split.answers(graphs, own))
-    duration = both.duration if both.outcomes else np.inf
-    return -round(graphs.connectivity, 2), duration
+    way: Way,
+    split: SplitComparison,
+    graphs: PartGraphs | None,
+    pair: tuple[int, int],
+    stride: int,
+) -> tuple[float, float, float]:
+    """Return what makes a profile worse: less connectivity, fewer answers, a longer duration."""
+    if graphs is None or not graphs.kept.any():
+        return 0.0, 0.0, np.inf
+    if pair[0] == pair[1]:
+        answers = _inner_answers(way, graphs, stride)
+    else:
+        asked = graph_requests(graphs.library, graphs.kept, stride)
+        own = {pair: asked[pair]} if pair in asked else {}
+        find = split.shortest if way.printed else split.answers
+        answers = merge_answers(find(graphs, own, way.search))
+    duration = _means(way, answers)[0]
+    answered = float(answers.answered.mean()) if way.printed and answers.outcomes else 1.0
+    return (
+        -round(graphs.connectivity, 2),
+        -round(answered, 2),
+        duration if isinstance(duration, float) else np.inf,
+    )
+
+
+def _inner_answers(way: Way, graphs: PartGraphs, stride: int) -> TransitionSummary:
+    """Return the answers inside a clip: from frames of it to some others, each by itself."""
+    kept = np.flatnonzero(graphs.kept)
+    targets = kept[np.linspace(0, len(kept) - 1, min(INNER_TARGETS, len(kept))).astype(int)]
+    ask = partial(part_outcome, [TransitionPlanner(graphs, None, way.search)])
+    frames = np.arange(len(graphs.library))
+    return TransitionSummary(
+        tuple(
+            ask(request, frames == target)
+            for request in kept[::stride].tolist()
+            for target in targets.tolist()
+            if request != target
+        )
+    )
 
 
 def _curves(
-    tables: Tables, whole: Comparison, split: SplitComparison | None, name: str, stride: int
+    found: Measurement, whole: Comparison, split: SplitComparison | None, name: str, stride: int
 ) -> None:
     """Find connectivity and cost against the threshold."""
-    thresholds = tables.critical["SMG"] * CURVE_FACTORS
+    thresholds = found.critical["SMG"] * CURVE_FACTORS
     shares, joined, costs = [], [], []
     for threshold in thresholds.tolist():
         try:
@@ -236,9 +323,5 @@ def _curves(
         if both.outcomes:
             joined.append(threshold)
             costs.append(both.cost)
-    tables.connectivity[name] = thresholds, np.array(shares)
-    tables.cost[name] = np.array(joined), np.array(costs)
-    for threshold, share in zip(thresholds.tolist(), shares, strict=True):
-        tables.add("connectivity", f"{threshold:.4f}", name, "", float(share))
-    for threshold, cost in zip(joined, costs, strict=True):
-        tables.add("cost", f"{threshold:.4f}", name, "", f"{cost:.4f}")
+    found.connectivity[name] = thresholds, np.array(shares)
+    found.cost[name] = np.array(joined), np.array(costs)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +12,12 @@ from cubeling.characters.synthesis.body import default_body_plan
 from cubeling.characters.synthesis.choices import DEFAULT_PROFILE
 from cubeling.characters.synthesis.distances import DISTANCES, FrameDistance, JointAngles
 from cubeling.characters.synthesis.graphs.candidates import Candidates, find_candidates
-from cubeling.characters.synthesis.graphs.graph import EdgeCosts, MotionGraph, build_graph
+from cubeling.characters.synthesis.graphs.graph import (
+    PRINTED_COSTS,
+    EdgeCosts,
+    MotionGraph,
+    build_graph,
+)
 from cubeling.characters.synthesis.graphs.parts import (
     PartGraphs,
     part_candidates,
@@ -36,6 +42,7 @@ def analyse(
     distance: str = "angles",
     threshold: float | None = None,
     progress: Callable[[str], None] = lambda part: None,
+    as_printed: bool = False,
 ) -> StoredGraph:
     """Return all that a file of a motion graph holds.
 
@@ -53,6 +60,9 @@ def analyse(
         one (M2, go beyond: free thresholds).
     progress
         Called with the name of each part before its frames are compared.
+    as_printed
+        Whether the parts share the least threshold that joins all their clips, where none is given,
+        and a jump joins the look-alikes themselves (M1.2, M2.2).
 
     Raises
     ------
@@ -76,7 +86,32 @@ def analyse(
             thresholds[part.name] = (
                 limit if threshold else joining_threshold(library, own, found, share)
             )
+    if as_printed:
+        rule = PRINTED_COSTS.rule
+        stored = StoredGraph(library, distance, profile, thresholds, candidates, rule)
+        return stored if threshold else replace(stored, thresholds=_shared_thresholds(stored))
     return StoredGraph(library, distance, profile, thresholds, candidates)
+
+
+def _shared_thresholds(stored: StoredGraph) -> dict[str, float]:
+    """Return the thresholds of a graph, with one for all parts, shared out by their weights."""
+    library = stored.library
+    parts = default_body_plan().split(stored.profile, library.skeleton, library.anatomy)
+    names = [part.name for part in parts if part.name != WHOLE_BODY]
+
+    def share_out(threshold: float) -> dict[str, float]:
+        shares = zip(names, threshold_shares(parts), strict=False)
+        return {**stored.thresholds, **{name: share * threshold for name, share in shares}}
+
+    return share_out(
+        critical_threshold(
+            lambda threshold: len(
+                part_graphs(replace(stored, thresholds=share_out(threshold))).joined_clips
+            ),
+            USUAL_THRESHOLD,
+            LARGEST_THRESHOLD,
+        )
+    )
 
 
 def check_choices(profile: str, distance: str) -> None:
@@ -131,21 +166,22 @@ def critical_threshold(joined: Callable[[float], int], low: float, high: float) 
 
 
 def standard_graph(stored: StoredGraph, costs: EdgeCosts | None = None) -> MotionGraph:
-    """Return the graph of the whole body that a file holds."""
+    """Return the graph of the whole body that a file holds; its jumps have the file's rule."""
     return build_graph(
         stored.library,
         DISTANCES[stored.distance](stored.library),
         stored.candidates[WHOLE_BODY],
         stored.thresholds[WHOLE_BODY],
-        costs,
+        replace(costs or EdgeCosts(), rule=stored.rule),
     )
 
 
 def part_graphs(stored: StoredGraph, costs: EdgeCosts | None = None) -> PartGraphs:
-    """Return the part graphs that a file holds."""
+    """Return the part graphs that a file holds; their jumps have the file's rule."""
     library = stored.library
     parts = default_body_plan().split(stored.profile, library.skeleton, library.anatomy)
     thresholds = [stored.thresholds[part.name] for part in parts]
+    costs = replace(costs or EdgeCosts(), rule=stored.rule)
     return PartGraphs.build(library, parts, stored.candidates, thresholds, costs)
 
 
@@ -162,18 +198,24 @@ def connectivity_curves(stored: StoredGraph, points: int = 24) -> dict[str, tupl
     for name, distance in distances.items():
         found = stored.candidates[name]
         thresholds = stored.thresholds[name] * np.geomspace(0.02, 2.0, points)
-        curves[name] = thresholds, connectivity(library, distance, found, thresholds)
+        costs = EdgeCosts(rule=stored.rule)
+        curves[name] = thresholds, connectivity(library, distance, found, thresholds, costs)
     return curves
 
 
 def connectivity(
-    library: MotionLibrary, distance: FrameDistance, candidates: Candidates, thresholds: Array
+    library: MotionLibrary,
+    distance: FrameDistance,
+    candidates: Candidates,
+    thresholds: Array,
+    costs: EdgeCosts | None = None,
 ) -> Array:
     """Return the share of frames in the largest component at each threshold (M3)."""
     shares = []
     for threshold in thresholds.tolist():
         try:
-            shares.append(build_graph(library, distance, candidates, threshold).connectivity)
+            graph = build_graph(library, distance, candidates, threshold, costs)
+            shares.append(graph.connectivity)
         except CharacterError:  # it connects nothing
             shares.append(0.0)
     return np.array(shares)

@@ -53,6 +53,10 @@ class EdgeCosts:
     """Whether a jump costs the square root of its distance, which makes many small ones dear."""
 
 
+PRINTED_COSTS = EdgeCosts(rule="same")
+"""Edges as the thesis prints them (M1.2)."""
+
+
 @dataclass(frozen=True)
 class MotionGraph:
     """A pruned graph: from every kept frame, every other kept frame can be reached."""
@@ -99,6 +103,10 @@ class MotionGraph:
         if key not in self._to_go:
             self._to_go[key] = cost_to_go(self.edges, goals & self.kept)
         return self._to_go[key]
+
+    def to_frame(self, frame: int) -> CostToGo:
+        """Return the shortest paths from all frames to one; the result is kept."""
+        return self.to_go(np.arange(len(self.library)) == frame)
 
     def next(self, node: int, goals: NDArray[np.bool_]) -> int:
         """Return the frame after a kept frame on the cheapest path to any of the goals (frames,).

@@ -1,6 +1,8 @@
 """Shortest paths: to any of several nodes, and with a bounded number of edges."""
 
+from array import array
 from dataclasses import dataclass
+from functools import cached_property
 from heapq import heappop, heappush
 from math import inf
 
@@ -14,11 +16,21 @@ from cubeling.characters.synthesis.graphs.edges import Edges, Nodes
 class CostToGo:
     """The shortest paths from every node to the nearest of some goals."""
 
-    costs: list[float]
+    costs: "array[float]"
     """Cost of the path from each node; 0 at a goal, ∞ where there is none."""
 
-    following: list[int]
+    following: "array[int]"
     """The next node on that path; −1 at a goal, and where there is no path."""
+
+    @cached_property
+    def lengths(self) -> Nodes:
+        """Number of edges of the path from each node; 0 at a goal, and where there is no path."""
+        onward = np.append(np.array(self.following), -1)  # −1 leads to the last, which stays
+        lengths = (onward >= 0).astype(np.intp)
+        while (onward >= 0).any():  # each round, every node sees twice as far
+            lengths += lengths[onward]
+            onward = onward[onward]
+        return lengths[:-1]
 
     def path(self, start: int) -> list[int]:
         """Return the nodes from a start to its goal, both included; [start] without a path."""
@@ -49,7 +61,7 @@ def cost_to_go(edges: Edges, goals: NDArray[np.bool_]) -> CostToGo:
                 costs[source] = total
                 following[source] = node
                 heappush(heap, (total, source))
-    return CostToGo(costs, following)
+    return CostToGo(array("d", costs), array("q", following))
 
 
 @dataclass(frozen=True)

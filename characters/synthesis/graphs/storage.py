@@ -18,6 +18,7 @@ from cubeling.characters.synthesis.archive import (
     skeleton_content,
 )
 from cubeling.characters.synthesis.graphs.candidates import Candidates
+from cubeling.characters.synthesis.graphs.graph import EdgeRule
 from cubeling.characters.synthesis.library import MotionLibrary
 from cubeling.files import FileKind
 
@@ -57,6 +58,9 @@ class StoredGraph:
     candidates: Mapping[str, Candidates]
     """Look-alikes of the whole body, `WHOLE_BODY`, and of each part of the profile, by name."""
 
+    rule: EdgeRule = "successor"
+    """Which frames a jump joins; "same" as printed."""
+
 
 def save_graph(stored: StoredGraph, path: Path) -> None:
     """Write a .graph file."""
@@ -71,6 +75,7 @@ def save_graph(stored: StoredGraph, path: Path) -> None:
         "profile": stored.profile,
         "thresholds": dict(stored.thresholds),
         "candidates": list(stored.candidates),
+        "rule": stored.rule,
     }
     arrays: dict[str, Any] = {
         **body_arrays,
@@ -140,4 +145,5 @@ def _read_stored(content: Content, arrays: Arrays) -> StoredGraph:
         content["profile"],
         {str(name): float(value) for name, value in content["thresholds"].items()},
         candidates,
+        "same" if content.get("rule") == "same" else "successor",  # files before have none
     )

@@ -22,9 +22,15 @@ from cubeling.characters.synthesis.transitions.evaluation import (
     by_pair,
     graph_requests,
     part_outcome,
+    shortest_part_outcome,
+    shortest_standard_outcome,
     standard_outcome,
 )
-from cubeling.characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
+from cubeling.characters.synthesis.transitions.progressive import (
+    PRINTED_SEARCH,
+    SearchSettings,
+    TransitionPlanner,
+)
 
 LOWEST_THRESHOLD = 1e-4
 
@@ -76,6 +82,10 @@ class Comparison:
     def answers(self, graph: MotionGraph, asked: Requests) -> Answers:
         """Return the answers of the graph of the whole body."""
         return by_pair(partial(standard_outcome, graph), self.library, asked)
+
+    def shortest(self, graph: MotionGraph, asked: Requests) -> Answers:
+        """Return the shortest answers of the graph of the whole body (eq. 3.4)."""
+        return by_pair(partial(shortest_standard_outcome, graph), self.library, asked)
 
     def part_answers(
         self,
@@ -145,6 +155,16 @@ class SplitComparison:
     ) -> Answers:
         """Return the answers of the part graphs."""
         return self.whole.part_answers([graphs], asked, settings)
+
+    def shortest(
+        self,
+        graphs: PartGraphs,
+        asked: Requests,
+        settings: SearchSettings = PRINTED_SEARCH,
+    ) -> Answers:
+        """Return the shortest answers of the part graphs (eq. 3.4)."""
+        planner = TransitionPlanner(graphs, None, settings)
+        return by_pair(partial(shortest_part_outcome, planner), graphs.library, asked)
 
     def _at(self, thresholds: list[float]) -> PartGraphs:
         return PartGraphs.build(

@@ -61,6 +61,11 @@ class SearchSettings:
     none of two or three: their search takes a time in proportion to the edges."""
 
 
+PRINTED_SEARCH = SearchSettings(search="shortest", symmetric=False, wide_window=10)
+"""The search as the thesis prints it: no part leaves or arrives before the legs, and only the
+cheapest path between two frames is looked at. Where no such paths fit, it has no answer."""
+
+
 class TransitionPlanner:
     """Plans transitions of a body by its part graphs.
 
@@ -90,9 +95,10 @@ class TransitionPlanner:
         found = self._narrow(request, goals)
         if found is not None:
             return found
-        wide = self._complete(request, self._first(request, goals), self.settings.wide_window)
-        if wide is not None:
-            return replace(wide, fallback="window")
+        if self.settings.wide_window > self.settings.window:
+            wide = self._complete(request, self._first(request, goals), self.settings.wide_window)
+            if wide is not None:
+                return replace(wide, fallback="window")
         whole, fallback = self.graphs.graphs[0], "legs"
         standard = self.standard
         if standard is not None and standard.kept[request] and (goals & standard.kept).any():
@@ -100,6 +106,17 @@ class TransitionPlanner:
         move = _move(whole, whole.path(request, goals))
         others = (replace(move, cost=0.0),) * (len(self.graphs.parts) - 1)
         return Transition(request, (move, *others), fallback)
+
+    def plan_to(self, request: int, frame: int) -> Transition | None:
+        """Return the transition in which the legs arrive at one frame; None if a part has no way.
+
+        The legs take their cheapest way there, and nothing else is tried.
+        """
+        path = self.graphs.graphs[0].to_frame(frame).path(request)
+        if path[-1] != frame or frame == request:
+            return None
+        prior = _move(self.graphs.graphs[0], path)
+        return self._complete(request, prior, self.settings.window)
 
     def plan_in_steps(self, request: int, goals: Goals) -> Generator[None, None, Transition]:
         """Plan a transition for play, one part between two yields, and return it.
@@ -202,15 +219,16 @@ class TransitionPlanner:
         return starts, arrivals
 
     def _fits(self, path: Nodes, departure: int, arrival: int) -> bool:
-        """Return whether a path stays in each clip, and can be scaled to its time.
-
-        That is |l − l'| / l' ≤ 20 %, where l is its length and l' the time.
-        """
+        """Return whether a path stays in each clip, and can be scaled to its time."""
         jumps = np.flatnonzero(self.graphs.library.successors[path[:-1]] != path[1:])
         if (np.diff(jumps) < self.settings.min_run).any():
             return False
-        length, required = len(path) - 1, arrival - departure
-        return required > 0 and abs(length - required) <= self.settings.tolerance * required + 1e-9
+        return bool(self._scales(np.array(len(path) - 1), np.array(arrival - departure)))
+
+    def _scales(self, lengths: Nodes, required: Nodes) -> NDArray[np.bool_]:
+        """Return which lengths can be scaled to their times: |l − l'| / l' ≤ 20 % (M2.4)."""
+        near = np.abs(lengths - required) <= self.settings.tolerance * required + 1e-9
+        return np.asarray((required > 0) & near)
 
     def _bound(
         self, part: int, request: int, prior: PartMove, window: int, few: bool = False
@@ -256,21 +274,34 @@ class TransitionPlanner:
         """Return the cheapest of the cheapest paths between both windows whose lengths fit."""
         graph = self.graphs.graphs[part]
         starts, arrivals = self._windows(request, prior, window)
-        best: PartMove | None = None
-        for arrival, frame in arrivals.items():
-            goal = np.zeros(len(graph.library), bool)
-            goal[frame] = True
-            to_go = graph.to_go(goal)
-            for departure, start in enumerate(starts):
-                if start < 0 or to_go.following[start] < 0:
-                    continue
-                cost = to_go.costs[start]
-                if best is not None and cost >= best.cost:
-                    continue
-                frames = np.array(to_go.path(start))
-                if self._fits(frames, departure, arrival):
-                    best = PartMove(departure, arrival, frames, cost)
-        return best
+        times = [time for time, start in enumerate(starts) if start >= 0]
+        nodes = [starts[time] for time in times]
+        if not nodes:  # the clip ends before
+            return None
+        ways = [graph.to_frame(frame) for frame in arrivals.values()]
+        lengths = np.array([way.lengths[nodes] for way in ways])
+        fits = self._scales(lengths, np.array([*arrivals])[:, None] - times) & (lengths > 0)
+        costs = np.array([[way.costs[node] for node in nodes] for way in ways])
+        costs[~fits] = np.inf
+        for option in np.argsort(costs, axis=None, kind="stable").tolist():
+            row, column = divmod(option, len(nodes))
+            if not np.isfinite(costs[row, column]):
+                break
+            path, arrival = np.array(ways[row].path(nodes[column])), [*arrivals][row]
+            if self._fits(path, times[column], arrival):
+                return PartMove(times[column], arrival, path, float(costs[row, column]))
+        return None
+
+
+def whole_body_transition(graph: MotionGraph, request: int, goals: Goals) -> Transition:
+    """Return the transition from a frame to any of the goals (frames,) by one graph.
+
+    Raises
+    ------
+    CharacterError
+        If the frame is not in the graph, or no goal is.
+    """
+    return Transition(request, (_move(graph, graph.path(request, goals)),))
 
 
 def cheapest_plan(

@@ -58,6 +58,7 @@ def test_shortest_paths_are_those_of_scipy(edges: Edges, data: st.DataObject) ->
     for node in range(edges.count):
         least = expected[node, goals].min(initial=np.inf)
         assert to_go.costs[node] == least
+        assert to_go.lengths[node] == len(to_go.path(node)) - 1
         if np.isfinite(least):
             path = to_go.path(node)
             costs = _sparse(edges).toarray()
