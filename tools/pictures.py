@@ -39,9 +39,13 @@ from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.status import PlaybackMark, Position, SessionStatus
 from cubeling.app.ui.window import Window
 from cubeling.app.workshop.latency.pattern import draw_pattern
+from cubeling.app.workshop.motion_graphs.timeline import save_timeline
+from cubeling.app.workshop.motion_graphs.transition import find_transitions
 from cubeling.characters import Character
+from cubeling.characters.model.motion_library import library_of
 from cubeling.characters.rendering import create_context
 from cubeling.characters.rendering.portrait import PortraitRenderer
+from cubeling.characters.synthesis.graphs.building import analyse
 from cubeling.tracking import CubeModel, open_source, write_sheet
 from cubeling.tracking.calibration import CubeFinder
 from cubeling.tracking.synthetic import open_synthetic
@@ -256,6 +260,22 @@ def draw_moods() -> None:
         plot(session, FOLDER / "mood-robot.svg", True)
 
 
+TRANSITION_CLIPS = ("WalkLeftWide", "Run")
+"""The clips between which docs/motion-graphs.md shows a transition."""
+
+TRANSITION_TIME_S = 0.13
+"""When the second is asked for [s]: both searches of the parts find a way."""
+
+
+def draw_transition() -> None:
+    """Plot which clip each part of the body plays between two clips of the bundled human."""
+    human = Character.load("human")
+    stored = analyse(library_of([*human.clips.values()], human))
+    found = find_transitions(stored, *TRANSITION_CLIPS, TRANSITION_TIME_S, as_printed=True)
+    title = " → ".join(TRANSITION_CLIPS)
+    save_timeline(FOLDER / "transition.svg", stored.library, found, title)
+
+
 BEHAVIOUR_TIMES_S = (0.4, 0.8, 1.6, 2.0, 2.8, 3.6, 4.0, 4.4)
 """When the block of BML in docs/behaviour.md is shown [s]."""
 
@@ -315,6 +335,7 @@ if __name__ == "__main__":
     draw_calibration()
     draw_pattern_of_latency()
     draw_moods()
+    draw_transition()
     draw_gestures()
     draw_gesture_editor()
     draw_behaviour()
