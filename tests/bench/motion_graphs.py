@@ -69,6 +69,9 @@ CHOICES = 6
 STRIDE = 8
 """Every so many frames of a clip, the other clips are asked for."""
 
+TABLE_STRIDE = 16
+"""The same for tables 3.2 to 3.4, of which a choice takes a minute."""
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -206,7 +209,7 @@ def printed_tables(console: Console, names: list[tuple[str, ...]], output: Path 
     """Print tables 3.2 to 3.4 over choices of clips: as printed, and in our own way."""
     choices = []
     for each in track(names, "tables", console=console):
-        choices.append(measure(library(each), STRIDE, curves=False))
+        choices.append(measure(library(each), TABLE_STRIDE, curves=False))
     found = summarize(choices)
     for name, title in TITLES.items():
         table = Table(title=f"{title}, over {len(choices)} choices of four clips")

@@ -26,6 +26,7 @@ from cubeling.app.input_path import check_character, check_motions
 from cubeling.characters.motion import DEFAULT_PROFILE
 
 if TYPE_CHECKING:
+    from cubeling.app.workshop.motion_graphs.tables import Measurement
     from cubeling.characters.motion import MotionGraph, MotionLibrary, PartGraphs, StoredGraph
 
 app = CommandGroup("Make motion graphs of your own recordings: where one clip can follow another.")
@@ -252,7 +253,7 @@ def tables(
         )
     body = with_root_joint(Character.load(character))
     console = Console()
-    choices = []
+    choices: list[Measurement] = []
     with console.status("reading") as status:
         libraries = [
             MotionLibrary.of(

@@ -21,7 +21,7 @@ from cubeling.app.workshop.motion_graphs.plot import plain_log_axis
 from cubeling.app.workshop.motion_graphs.summary import (
     TITLES,
     Estimate,
-    Summary,
+    TablesSummary,
     printed_value,
 )
 from cubeling.app.workshop.motion_graphs.tables import Measurement
@@ -46,7 +46,7 @@ td.printed { border-left: 1px solid #dcdfe6; } .wide { overflow-x: auto; }
 """ + "\n".join(f".joined{count} {{ background: {color}; }}" for count, color in COLORS.items())
 
 
-def write_page(summary: Summary, path: Path) -> Path:
+def write_page(summary: TablesSummary, path: Path) -> Path:
     """Write an .html page and a .csv file of its name; return the path of the latter."""
     first = summary.choices[0]
     body = [f"<h1>Motion graphs of {quantity(len(summary.choices), 'choice')} of four clips</h1>"]
@@ -74,7 +74,7 @@ def _clips(choice: Measurement) -> str:
     return f"<p>{names}.<small>Least thresholds that join all clips: {critical}.</small></p>"
 
 
-def _table(summary: Summary, name: str) -> str:
+def _table(summary: TablesSummary, name: str) -> str:
     """Return a table as HTML: in each column the printed value, then that of each way."""
     keys = [key for key in summary.cells if key[0] == name]
     columns = list(dict.fromkeys(column for _, _, column in keys))
@@ -101,7 +101,7 @@ def _cell(estimate: Estimate) -> str:
     return f"<td{color}>{escape(estimate.text)}{spread}</td>"
 
 
-def _write_csv(summary: Summary, path: Path) -> Path:
+def _write_csv(summary: TablesSummary, path: Path) -> Path:
     """Write all values as CSV, and return the path."""
     ways = summary.ways
     heads = [f"{way}{end}" for way in ways for end in ("", " low", " high")]

@@ -58,7 +58,7 @@ class Estimate:
 
 
 @dataclass(frozen=True)
-class Summary:
+class TablesSummary:
     """The tables of several choices of clips."""
 
     choices: tuple[Measurement, ...]
@@ -86,7 +86,7 @@ class Summary:
         )
 
 
-def summarize(choices: Sequence[Measurement]) -> Summary:
+def summarize(choices: Sequence[Measurement]) -> TablesSummary:
     """Return the tables of some choices of clips, all measured in the same ways."""
     cells = {
         key: {
@@ -98,7 +98,7 @@ def summarize(choices: Sequence[Measurement]) -> Summary:
         }
         for key in next(iter(choices[0].values.values()))
     }
-    return Summary(tuple(choices), cells)
+    return TablesSummary(tuple(choices), cells)
 
 
 def printed_value(key: Key) -> str:

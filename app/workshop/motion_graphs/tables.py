@@ -1,6 +1,6 @@
 """The tables and curves of chapter 3.5 of the thesis, measured on four clips: not yet shown."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeAlias
@@ -45,7 +45,7 @@ Value: TypeAlias = float | str | None
 
 
 @dataclass(frozen=True)
-class Way:
+class SearchWay:
     """How graphs are built, searched, and measured."""
 
     name: str
@@ -61,8 +61,8 @@ class Way:
     3.4) instead of those of the cheapest transitions, and only answers in the window count."""
 
 
-AS_PRINTED = Way("as printed", PRINTED_COSTS, PRINTED_SEARCH, printed=True)
-OURS = Way("ours", EdgeCosts(), SearchSettings(), printed=False)
+AS_PRINTED = SearchWay("as printed", PRINTED_COSTS, PRINTED_SEARCH, printed=True)
+OURS = SearchWay("ours", EdgeCosts(), SearchSettings(), printed=False)
 
 
 @dataclass
@@ -94,7 +94,7 @@ class Measurement:
 def measure(
     library: MotionLibrary,
     stride: int,
-    ways: Sequence[Way] = (AS_PRINTED, OURS),
+    ways: Sequence[SearchWay] = (AS_PRINTED, OURS),
     curves: bool = True,
     progress: Callable[[str], None] = lambda what: None,
 ) -> Measurement:
@@ -141,7 +141,7 @@ def measure(
 
 
 def _table_3_2(
-    found: Measurement, way: Way, whole: Comparison, split: SplitComparison, stride: int
+    found: Measurement, way: SearchWay, whole: Comparison, split: SplitComparison, stride: int
 ) -> None:
     """Find TBF and response, at the printed multiples of the critical threshold."""
     values, library = found.values[way.name], whole.library
@@ -175,13 +175,13 @@ def _table_3_2(
                 values["3.2", row, "BPMG no answer [%]"] = _unanswered(way, both)
 
 
-def _means(way: Way, answers: TransitionSummary) -> tuple[Value, Value]:
+def _means(way: SearchWay, answers: TransitionSummary) -> tuple[Value, Value]:
     """Return the mean duration and response of what counts as an answer."""
     counted = answers.where(answers.answered) if way.printed else answers
     return (counted.duration, counted.response) if counted.outcomes else (None, None)
 
 
-def _unanswered(way: Way, answers: TransitionSummary) -> Value:
+def _unanswered(way: SearchWay, answers: TransitionSummary) -> Value:
     """Return the share of requests without an answer [%]; our own search answers all."""
     if not answers.outcomes:
         return None
@@ -189,7 +189,7 @@ def _unanswered(way: Way, answers: TransitionSummary) -> Value:
 
 
 def _table_3_3(
-    found: Measurement, way: Way, whole: Comparison, split: SplitComparison, stride: int
+    found: Measurement, way: SearchWay, whole: Comparison, split: SplitComparison, stride: int
 ) -> None:
     """Find duration and response from clip to clip, each method at its critical threshold.
 
@@ -220,7 +220,7 @@ def _table_3_3(
 
 
 def _table_3_4(
-    found: Measurement, way: Way, whole: Comparison, split: SplitComparison, stride: int
+    found: Measurement, way: SearchWay, whole: Comparison, split: SplitComparison, stride: int
 ) -> None:
     """Find the best profile of each pair: graphs of both clips alone, at one threshold.
 
@@ -237,36 +237,39 @@ def _table_3_4(
             threshold = found.critical["SP4b"]
             if not way.printed and origin != target:
                 threshold = min(each.threshold for each in splits.values())
-            graphs: dict[str, PartGraphs | None] = {}
-            shared: dict[str, MotionGraph] = {}  # the paths in a part serve all of its profiles
-            for profile, each in splits.items():
-                try:
-                    own = each.graphs(threshold)
-                except CharacterError:  # it connects nothing
-                    graphs[profile] = None
-                    continue
-                named = zip(own.parts, own.graphs, strict=True)
-                same = tuple(shared.setdefault(part.name, graph) for part, graph in named)
-                graphs[profile] = PartGraphs(own.parts, same)
+            graphs = _most_connected(splits, threshold)
             for here, there in {(0, len(clips) - 1), (len(clips) - 1, 0)}:
                 ranks = {
-                    profile: _rank(way, splits[profile], graphs[profile], (here, there), stride)
-                    for profile in SPLIT_PROFILES
+                    profile: _rank(way, splits[profile], own, (here, there), stride)
+                    for profile, own in graphs.items()
                 }
                 key = "3.4", f"C{clips[here] + 1}", f"C{clips[there] + 1}"
-                values[key] = min(SPLIT_PROFILES, key=ranks.__getitem__)
+                values[key] = min(graphs, key=ranks.__getitem__, default=None)
+
+
+def _most_connected(
+    splits: Mapping[str, SplitComparison], threshold: float
+) -> dict[str, PartGraphs]:
+    """Return the graphs of the profiles that connect most frames, to a percent; none if none do."""
+    found: dict[str, PartGraphs] = {}
+    shared: dict[str, MotionGraph] = {}  # the paths in a part serve all of its profiles
+    for profile, each in splits.items():
+        try:
+            own = each.graphs(threshold)
+        except CharacterError:  # it connects nothing
+            continue
+        named = zip(own.parts, own.graphs, strict=True)
+        same = tuple(shared.setdefault(part.name, graph) for part, graph in named)
+        found[profile] = PartGraphs(own.parts, same)
+    shares = {profile: round(own.connectivity, 2) for profile, own in found.items()}
+    most = max(shares.values(), default=0.0)
+    return {profile: own for profile, own in found.items() if shares[profile] == most > 0.0}
 
 
 def _rank(
-    way: Way,
-    split: SplitComparison,
-    graphs: PartGraphs | None,
-    pair: tuple[int, int],
-    stride: int,
-) -> tuple[float, float, float]:
-    """Return what makes a profile worse: less connectivity, fewer answers, a longer duration."""
-    if graphs is None or not graphs.kept.any():
-        return 0.0, 0.0, np.inf
+    way: SearchWay, split: SplitComparison, graphs: PartGraphs, pair: tuple[int, int], stride: int
+) -> tuple[float, float]:
+    """Return what makes a profile worse: fewer answers, then a longer duration."""
     if pair[0] == pair[1]:
         answers = _inner_answers(way, graphs, stride)
     else:
@@ -276,14 +279,10 @@ def _rank(
         answers = merge_answers(find(graphs, own, way.search))
     duration = _means(way, answers)[0]
     answered = float(answers.answered.mean()) if way.printed and answers.outcomes else 1.0
-    return (
-        -round(graphs.connectivity, 2),
-        -round(answered, 2),
-        duration if isinstance(duration, float) else np.inf,
-    )
+    return -round(answered, 2), duration if isinstance(duration, float) else np.inf
 
 
-def _inner_answers(way: Way, graphs: PartGraphs, stride: int) -> TransitionSummary:
+def _inner_answers(way: SearchWay, graphs: PartGraphs, stride: int) -> TransitionSummary:
     """Return the answers inside a clip: from frames of it to some others, each by itself."""
     kept = np.flatnonzero(graphs.kept)
     targets = kept[np.linspace(0, len(kept) - 1, min(INNER_TARGETS, len(kept))).astype(int)]

@@ -280,7 +280,8 @@ class TransitionPlanner:
             return None
         ways = [graph.to_frame(frame) for frame in arrivals.values()]
         lengths = np.array([way.lengths[nodes] for way in ways])
-        fits = self._scales(lengths, np.array([*arrivals])[:, None] - times) & (lengths > 0)
+        required = np.array([*arrivals])[:, None] - np.array(times)
+        fits = self._scales(lengths, required) & (lengths > 0)
         costs = np.array([[way.costs[node] for node in nodes] for way in ways])
         costs[~fits] = np.inf
         for option in np.argsort(costs, axis=None, kind="stable").tolist():

@@ -98,6 +98,8 @@ def test_several_choices_of_clips_have_means_and_intervals() -> None:
     found = summarize(chosen)
     duration = found.cells["3.2", "0.06", "SMG TBF"]["ours"]
     assert duration.text == "12.00"
+    assert duration.low is not None
+    assert duration.high is not None
     assert 10.0 <= duration.low < 12.0 < duration.high <= 14.0
     assert duration.joined == 3
     assert found.cells["3.4", "C3", "C3"]["ours"].spread == "2 of 3"

@@ -117,7 +117,8 @@ def test_the_shortest_answer_of_parts_is_the_least_over_all_goals(
     """Eq. 3.4: duration and response have their minima each by itself."""
     planner = TransitionPlanner(graphs, None, settings)
     for frame, goals in _requests(graphs.kept, graphs.library)[::3]:
-        every = [planner.plan_to(frame, goal) for goal in np.flatnonzero(goals & graphs.kept)]
+        kept = np.flatnonzero(goals & graphs.kept).tolist()
+        every = [planner.plan_to(frame, goal) for goal in kept]
         found = [each for each in every if each is not None]
         own = shortest_part_outcome(planner, frame, goals)
         assert own.answered == bool(found)
