@@ -24,9 +24,11 @@ from pathlib import Path
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import track
 from rich.table import Table
 
+from cubeling.app.counted import quantity
 from cubeling.app.workshop.motion_graphs.page import write_page
 from cubeling.app.workshop.motion_graphs.recordings import fit_recording
 from cubeling.app.workshop.motion_graphs.summary import (
@@ -212,7 +214,7 @@ def printed_tables(console: Console, names: list[tuple[str, ...]], output: Path 
         choices.append(measure(library(each), TABLE_STRIDE, curves=False))
     found = summarize(choices)
     for name, title in TITLES.items():
-        table = Table(title=f"{title}, over {len(choices)} choices of four clips")
+        table = Table(title=f"{escape(title)}, over {len(choices)} choices of four clips")
         for heading in ("", "", "thesis", *found.ways):
             table.add_column(heading)
         for key, cells in found.cells.items():
@@ -228,9 +230,10 @@ def printed_tables(console: Console, names: list[tuple[str, ...]], output: Path 
     for what, wanted in (("of one actor", {1}), ("of several actors", {2, 3, 4})):
         own = [choice for choice, count in zip(choices, actors, strict=True) if count in wanted]
         for way in found.ways if own else ():
-            console.print(f"{len(own)} choices {what}, {summarize(own).order(way)}")
+            order = summarize(own).order(way)
+            console.print(f"{quantity(len(own), 'choice')} {what}, {order}", soft_wrap=True)
     for way in found.ways:
-        console.print(f"all {len(choices)} choices, {found.order(way)}")
+        console.print(f"all {len(choices)} choices, {found.order(way)}", soft_wrap=True)
     if output:
         write_page(found, output)
 

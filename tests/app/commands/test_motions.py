@@ -5,15 +5,18 @@ import pytest
 
 from cubeling.app.workshop.motion_graphs.page import write_page
 from cubeling.app.workshop.motion_graphs.printed import (
+    CRITICAL,
     SHORTER_AND_SOONER,
     TABLE_3_2,
     TABLE_3_3,
     TABLE_3_4,
 )
 from cubeling.app.workshop.motion_graphs.summary import summarize
-from cubeling.app.workshop.motion_graphs.tables import Measurement
+from cubeling.app.workshop.motion_graphs.tables import SPLIT_PROFILES, Measurement, measure
 from cubeling.app.workshop.motion_graphs.transition import find_transitions
+from cubeling.characters import Character
 from cubeling.characters.synthesis.graphs.storage import load_graph
+from cubeling.characters.synthesis.library import MotionLibrary
 
 
 @pytest.fixture
@@ -167,3 +170,26 @@ def test_tables_need_four_clips(cubeling) -> None:
     code, _, error = cubeling("motions", "tables", "human#Walk", "human#Run")
     assert code == 2
     assert "2 clips: give four" in error
+
+
+@pytest.mark.slow(reason="all graphs of four clips are built and searched in both ways")
+def test_four_clips_give_all_cells_of_all_tables() -> None:
+    human = Character.load("human")
+    clips = [human.clips[name] for name in ("Walk", "Run", "WalkLeftWide", "WalkRightShort")]
+    library = MotionLibrary.of(clips, human.skeleton, human.anatomy, 12.0)
+    found = measure(library, 12, curves=False)
+    for way in ("as printed", "ours"):
+        values = found.values[way]
+        assert len([key for key in values if key[0] == "3.4"]) == 16
+        assert {values["3.4", f"C{n}", f"C{n}"] for n in (1, 2, 3, 4)} <= {*SPLIT_PROFILES}
+        for method, threshold in CRITICAL.items():
+            clips_joined = [values["3.2", f"{st:g}", f"{method} clips"] for st in TABLE_3_2]
+            assert clips_joined == sorted(clips_joined)
+            assert values["3.2", f"{threshold:g}", f"{method} clips"] == 4.0
+        shorter, sooner, pairs = found.pairs[way]
+        assert max(shorter, sooner) <= pairs <= 12
+    assert found.pairs["ours"][2] == 12  # our own search answers everything
+    cells = summarize([found]).cells
+    assert cells["3.3", "C1 → C2", "SMG duration"]["ours"].value == pytest.approx(
+        found.values["ours"]["3.3", "C1 → C2", "SMG duration"]
+    )
