@@ -113,6 +113,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.mocap
 	$(BIN)/python -m tests.bench.retarget
 	$(BIN)/python -m tests.bench.motion_graphs --choices 6
+	$(BIN)/python -m tests.bench.motion_graphs --tables --choices 6
 	$(BIN)/python -m tests.bench.loading
 	$(BIN)/python -m tests.bench.feet
 	$(BIN)/python -m tests.bench.matching

@@ -72,7 +72,7 @@ STRIDE = 8
 """Every so many frames of a clip, the other clips are asked for."""
 
 TABLE_STRIDE = 16
-"""The same for tables 3.2 to 3.4, of which a choice takes a minute."""
+"""The same for tables 3.2 to 3.4, of which a choice takes one to two minutes of a processor."""
 
 
 @dataclass(frozen=True)
