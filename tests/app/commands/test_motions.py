@@ -183,8 +183,8 @@ def test_four_clips_give_all_cells_of_all_tables() -> None:
         assert len([key for key in values if key[0] == "3.4"]) == 16
         assert {values["3.4", f"C{n}", f"C{n}"] for n in (1, 2, 3, 4)} <= {*SPLIT_PROFILES}
         for method, threshold in CRITICAL.items():
-            clips_joined = [values["3.2", f"{st:g}", f"{method} clips"] for st in TABLE_3_2]
-            assert clips_joined == sorted(clips_joined)
+            joined = [values["3.2", f"{st:g}", f"{method} clips"] for st in TABLE_3_2]
+            assert (np.diff(np.array(joined, float)) >= 0.0).all()
             assert values["3.2", f"{threshold:g}", f"{method} clips"] == 4.0
         shorter, sooner, pairs = found.pairs[way]
         assert max(shorter, sooner) <= pairs <= 12
