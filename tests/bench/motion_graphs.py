@@ -233,7 +233,8 @@ def printed_tables(console: Console, names: list[tuple[str, ...]], output: Path 
             order = summarize(own).order(way)
             console.print(f"{quantity(len(own), 'choice')} {what}, {order}", soft_wrap=True)
     for way in found.ways:
-        console.print(f"all {len(choices)} choices, {found.order(way)}", soft_wrap=True)
+        every = quantity(len(choices), "choice")
+        console.print(f"{every} in all, {found.order(way)}", soft_wrap=True)
     if output:
         write_page(found, output)
 
