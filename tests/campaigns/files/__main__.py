@@ -9,6 +9,7 @@ files that fail.
 
 import argparse
 import contextlib
+import gc
 import multiprocessing
 import os
 import pkgutil
@@ -46,6 +47,9 @@ from tests.campaigns.files.mutations import mutant
 
 MOST_CPU_S_PER_MB, MOST_BYTES = 2.0, 500_000_000
 """What reading a file may take, for each MB that is begun, and more memory than before."""
+
+COLLECTED_FILES = 20
+"""After so many files it is looked for garbage in circles: few large arrays do not call for it."""
 
 FRAMES = 20
 """Frames that are read of a video or session."""
@@ -155,6 +159,7 @@ def batch(
 ) -> tuple[str, list[Trial]]:
     """Read damaged copies of the examples of a kind, one for each seed."""
     read = reader_of(reader)
+    gc.collect()  # what others have left here, in circles, is not this reader's
     for example in examples:  # what is loaded once counts for none of them
         with contextlib.suppress(BadInputError):
             read_all(read, example)
@@ -164,7 +169,9 @@ def batch(
     place.mkdir()
     for skeleton in {each for example in examples for each in example.parent.glob("*.asf")}:
         shutil.copy(skeleton, place)  # of an .amc
-    for seed in seeds:
+    for number, seed in enumerate(seeds):
+        if number % COLLECTED_FILES == 0:
+            gc.collect()
         example = examples[seed % len(examples)]
         path = place / example.name
         random = np.random.default_rng([1, seed])
