@@ -18,6 +18,7 @@ from cubeling.characters.control.keep_clear import KeepClear
 from cubeling.characters.control.layers import FrameContext, LayerFactory, apply_layers, layers_of
 from cubeling.characters.control.tagged_gestures import TaggedGestures
 from cubeling.characters.errors import CharacterError
+from cubeling.characters.locomotion.obstacles import Obstacle
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.skeleton.pose import Array
@@ -98,12 +99,12 @@ class Animator:
         """Length of the character on the table, from front to back [m]."""
         return self.character.length * self.scale
 
-    def box(self) -> tuple[Array, Array] | None:
-        """Return pose, (4, 4), and size, (3,), of a box around the body as it was drawn last [m].
+    def obstacle(self, velocity: Array) -> Obstacle | None:
+        """Return the body as others keep out of it, with its velocity, (3,) [m/s].
 
         None if nothing has been drawn.
         """
-        return self._keep_clear.box()
+        return self._keep_clear.obstacle(velocity)
 
     def update(self, command: CharacterCommand) -> PosedCharacter:
         """Advance to the command's time and return the character as it is to be drawn.

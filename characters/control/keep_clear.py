@@ -160,12 +160,12 @@ class KeepClear:
         """Take what is drawn: the next frame keeps that out of the obstacles."""
         self._drawn, self._points = (pose, table_from_character), None
 
-    def box(self) -> tuple[Array, Array] | None:
-        """Return a box around the body as it was drawn last; None if nothing has been drawn.
+    def obstacle(self, velocity: Array) -> Obstacle | None:
+        """Return the body as it was drawn last, for others; None if nothing has been drawn.
 
-        That is its pose, (4, 4) with the origin in its centre, and the lengths of its edges, (3,)
-        [m on the table]; it stands upright and is turned as the character is. A body that leaps
-        takes all the place from where it is to where it will land.
+        It is a box that stands upright and is turned as the character is, and moves with a
+        `velocity`, (3,) [m/s]. A body that leaps takes all the place from where it is to where it
+        will land, and does not leave that.
         """
         points = self._outline_points()
         if points is None or not len(points):
@@ -179,8 +179,9 @@ class KeepClear:
             left = self._leap.start + self._leap.way - self._offset
             along = np.insert(left, 1, 0.0) @ pose[:3, :3]
             low, high = low + np.minimum(along, 0.0), high + np.maximum(along, 0.0)
+            velocity = np.zeros(3)
         pose[:3, 3] = pose[:3, :3] @ (low + high) / 2
-        return pose, np.asarray(high - low)
+        return Obstacle(pose, np.asarray(high - low), velocity, alive=True)
 
     @property
     def _is_displaced(self) -> bool:

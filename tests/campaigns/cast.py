@@ -115,7 +115,7 @@ class Unaware(Playground):
         """Start a scenario with members that are in nobody's way."""
         super().play(*given, **named)  # type: ignore[arg-type]
         for member in self.cast.members:
-            member._animator.box = lambda: None  # type: ignore[method-assign]
+            member._animator.obstacle = lambda velocity: None  # type: ignore[method-assign]
 
 
 class Watch:

@@ -167,8 +167,7 @@ class CastMember:
         """Its body as it is in the way of others; None where it is not seen on the table."""
         if self.posed is None or not self.posed.visible:
             return None
-        box = self._animator.box()
-        return None if box is None else Obstacle(*box, self._velocity, alive=True)
+        return self._animator.obstacle(self._velocity)
 
 
 def _velocity(before: PosedCharacter | None, now: PosedCharacter) -> NDArray[np.float64]:
