@@ -48,8 +48,8 @@ PELVIS_SPRING: Vector = (2.2, 3.0, 6.0)
 SPINE_SPRING: Vector = (2.8, 2.4, 4.0)
 """How stiff the whole spine holds its shape: bow, turn and tilt."""
 
-COLLAR_SPRING = 3.0
-"""How stiff a collarbone is."""
+COLLAR_SPRING, COLLAR_RANGE_RAD = 3.0, math.radians(25.0)
+"""How stiff a collarbone is, and how far it turns."""
 
 PELVIS_RANGE_DEG = ((-15.0, 50.0), (-40.0, 40.0), (-12.0, 12.0))
 """How far a pelvis bows, turns and tilts over planted feet [degrees]."""
@@ -58,18 +58,12 @@ SPINE_RANGE_DEG = ((-20.0, 65.0), (-40.0, 40.0), (-30.0, 30.0))
 """How far a whole spine does, however many joints it has [degrees]; one of few joints bends less,
 as far as these do by their natural limits."""
 
-COLLAR_RANGE_RAD = math.radians(25.0)
-"""How far a collarbone turns."""
-
-LIMIT_SPRING = 14.0
-"""How stiff a joint is beyond its range."""
+LIMIT_SPRING, TAUT_LEG = 14.0, 300.0
+"""How stiff a joint is beyond its range, and a straight leg."""
 
 LONGEST_LEG, SHORTEST_LEG = 0.99, 0.55
 """Extension of a leg that is straight, unless the pose has it straighter, and of one that is folded
 up, ÷ its length."""
-
-TAUT_LEG = 300.0
-"""How stiff a straight leg is."""
 
 BALANCE_SPRING, FALLING_SPRING = 12.0, 120.0
 """How stiff the middle of mass holds its place over the feet, and beyond them [1/body height]."""
