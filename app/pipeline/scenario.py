@@ -146,6 +146,14 @@ class AskingScenario(Protocol):
     """The place that names each action, such as "my.toml: rule[0].do", by the action."""
 
 
+@runtime_checkable
+class CastScenario(Protocol):
+    """A scenario with several characters."""
+
+    others: tuple[str, ...]
+    """The rest of its cast, unless the player chooses one: bundled characters or files."""
+
+
 def check_actions(scenario: Scenario, character: str, known: Collection[str]) -> None:
     """Refuse a character that lacks an action which the scenario will ask for.
 

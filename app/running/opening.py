@@ -11,6 +11,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.output_path import default_folder
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import CastScenario
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.kept_lens import LensStore
@@ -217,7 +218,9 @@ def open_session(
 
 def names_of_cast(options: SessionOptions, scenario: Scenario) -> tuple[str, ...]:
     """Return the names or files of all characters: at least one for each player."""
-    named = (options.character or scenario.character, *options.others)
+    chosen = options.character is not None or options.others
+    own = scenario.others if isinstance(scenario, CastScenario) and not chosen else ()
+    named = (options.character or scenario.character, *options.others, *own)
     return (*named, *[scenario.character] * (options.players - len(named)))
 
 

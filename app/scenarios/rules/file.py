@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import MAX_CAST
 from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, MOMENTARY_CONDITIONS, Term
 from cubeling.toml_file import TomlTable, read, toml_kind
 
@@ -58,6 +59,9 @@ class RuleSet:
     character: str
     """A bundled character, or a file."""
 
+    others: tuple[str, ...]
+    """The rest of the cast, in the same way."""
+
     cube: str
     """A bundled cube, or a file."""
 
@@ -111,7 +115,7 @@ def read_rules(path: str | Path) -> RuleSet:
         It cannot be read, or in one line: which key has which wrong value.
     """
     file = TomlTable(read(Path(path), RULES_FILE), str(path), error=AppError)
-    file.only("summary", "character", "cube", "personality", "language", "hint", "rule")
+    file.only("summary", "character", "others", "cube", "personality", "language", "hint", "rule")
     rules = tuple(_rule(row) for row in file.rows("rule", *RULE_KEYS))
     if not rules:
         raise file.wrong("rule", "there is none; begin one with a line [[rule]]")
@@ -120,12 +124,20 @@ def read_rules(path: str | Path) -> RuleSet:
         name=str(path),
         summary=file.line("summary", "a scenario of rules").removesuffix("."),
         character=_beside(folder, file.line("character", "human")),
+        others=_others(file, folder),
         cube=_beside(folder, file.line("cube", "companion")),
         personality=_beside(folder, file.line("personality", "lively")),
         language=file.line("language", "en"),
         hint=file.line("hint", "Move the cube"),
         rules=rules,
     )
+
+
+def _others(file: TomlTable, folder: Path) -> tuple[str, ...]:
+    names = file.texts("others")
+    if len(names) >= MAX_CAST:
+        raise file.wrong("others", f"there are {len(names)}, and at most {MAX_CAST - 1} fit")
+    return tuple(_beside(folder, name) for name in names)
 
 
 def _beside(folder: Path, name: str) -> str:

@@ -44,6 +44,7 @@ class RulesScenario:
     cube: str
     roles: tuple[str, ...]
     character: str
+    others: tuple[str, ...]
     personality: str
     start = HOME
     has_intensity = False
@@ -146,6 +147,7 @@ def rules_scenario(path: str) -> type[RulesScenario]:
         "cube": rules.cube,
         "roles": rules.roles,
         "character": rules.character,
+        "others": rules.others,
         "personality": rules.personality,
     }
     return type("FileScenario", (RulesScenario,), members)

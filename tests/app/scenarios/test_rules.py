@@ -11,9 +11,11 @@ import pytest
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import check_actions
+from cubeling.app.running.opening import names_of_cast
 from cubeling.app.scenarios import Inputs, Situation, make_scenario
 from cubeling.app.scenarios.rules.file import read_rules
 from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, Term
+from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.lines import bundled_languages, bundled_lines
 from cubeling.tracking import CubeModel, Intrinsics
 
@@ -212,3 +214,26 @@ def test_a_name_that_cannot_be_one_is_refused(cubeling, name):
     assert code == 2
     assert err.count("\n") == 1
     assert not Path(name).exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "cast"),
+    [
+        ({}, ("human", "vleo", "robot")),
+        ({"character": "robot"}, ("robot",)),
+        ({"character": "robot", "others": ("human",)}, ("robot", "human")),
+        ({"players": 2}, ("human", "vleo", "robot")),
+    ],
+)
+def test_a_file_names_its_cast_unless_the_player_does(tmp_path, options, cast):
+    path = tmp_path / "cast.toml"
+    path.write_text(RULES.replace("[[rule]]", 'others = ["vleo", "robot"]\n[[rule]]', 1))
+    asked = SessionOptions(scenario=str(path), source="none", **options)
+    assert names_of_cast(asked, make_scenario(str(path))) == cast
+
+
+def test_a_file_with_too_large_a_cast_is_refused(tmp_path):
+    path = tmp_path / "crowd.toml"
+    path.write_text(RULES.replace("[[rule]]", f"others = {['vleo'] * 5}\n[[rule]]", 1))
+    with pytest.raises(AppError, match="at most 4"):
+        make_scenario(str(path))
