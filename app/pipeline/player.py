@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.step import Played
+from cubeling.app.pipeline.step import PlayerStep
 from cubeling.app.pipeline.table.obstacles import Obstacles
 from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.tracking import (
@@ -20,7 +20,7 @@ from cubeling.tracking import (
 )
 
 
-class Player:
+class CubePlayer:
     """A player with a cube. It changes from frame to frame, and a checkpoint copies it.
 
     Parameters
@@ -45,11 +45,11 @@ class Player:
         """Compute what the hand does with the cube."""
         return self._gestures.update(state)
 
-    def play(self, frame: Frame, markers: FrameMarkers, first: CubeControls) -> Played:
+    def play(self, frame: Frame, markers: FrameMarkers, first: CubeControls) -> PlayerStep:
         """Find the cube, and tell what the hand does with it on the table of the `first` player."""
         state = self.tracked.track(frame, markers)
         controls = on_table_of(first, self.gesture(state), state)
-        return Played(self.name, state, controls, self.cube.edge)
+        return PlayerStep(self.name, state, controls, self.cube.edge)
 
 
 def on_table_of(first: CubeControls, controls: CubeControls, state: CubeState) -> CubeControls:

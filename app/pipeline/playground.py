@@ -17,7 +17,7 @@ from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.picture_regions import picture_regions
-from cubeling.app.pipeline.player import Player, check_players
+from cubeling.app.pipeline.player import CubePlayer, check_players
 from cubeling.app.pipeline.registry import make_scenario
 from cubeling.app.pipeline.scenario import (
     AdjustableScenario,
@@ -162,7 +162,7 @@ class Playground:
         self.cast = Cast([lead, *further_members(names, self._others, led, look, edges)])
         """Who is on the table: first the character that the first cube leads."""
         self.players = tuple(
-            Player(name, each, self.intrinsics, self.known_cubes)
+            CubePlayer(name, each, self.intrinsics, self.known_cubes)
             for name, each in zip(distinct_names(e.name for e in cubes), cubes, strict=True)
         )
         """Who plays, each with a cube."""

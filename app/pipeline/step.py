@@ -43,7 +43,7 @@ class Performance:
 
 
 @dataclass(frozen=True)
-class Played:
+class PlayerStep:
     """What a further player does in a frame."""
 
     name: str
@@ -103,7 +103,7 @@ class Step:
     others: tuple[Performance, ...] = ()
     """What the rest of the cast does."""
 
-    players: tuple[Played, ...] = ()
+    players: tuple[PlayerStep, ...] = ()
     """What the further players do."""
 
     interior: Interior | None = None
