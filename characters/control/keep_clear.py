@@ -303,13 +303,15 @@ class KeepClear:
         # Most of the time all are too far away to come near: that is cheap to tell.
         wide = float(np.sqrt(((points[:, [0, 2]] - self._here) ** 2).sum(axis=1).max())) + SLACK_M
         wide += AHEAD_S[-1] * float(np.linalg.norm(walking))
-        obstacles = [
-            each
+        comes_near = [
+            each.distance(self._here) < wide + 0.7 * float(np.linalg.norm(each.velocity))
             for each in obstacles
-            if each.distance(self._here) < wide + 0.7 * float(np.linalg.norm(each.velocity))
         ]
-        if not obstacles:
+        if not any(comes_near):
             return None
+        # A leap may lead to another character that is further away.
+        pairs = zip(obstacles, comes_near, strict=True)
+        obstacles = [each for each, near in pairs if near or each.alive]
         rooms = [ROOM_M + ROOM_S * float(np.linalg.norm(each.velocity)) for each in obstacles]
         return way_out(points, obstacles, AHEAD_S, rooms, command.view, self._side, walking)
 
