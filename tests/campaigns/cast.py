@@ -23,11 +23,12 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.app.pipeline.cast.cast import Cast
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.scenarios import find_scenario
 from cubeling.app.session.bundled import RECORDED_SCENARIOS
-from cubeling.characters import Character, PosedCharacter
+from cubeling.characters import Character, Obstacle, PosedCharacter
 from cubeling.tracking import CubeModel, Frame
 from tests.bench.keep_clear import DRIVE_S, Surface, drive
 
@@ -108,14 +109,20 @@ def _area(a: Array, b: Array, c: Array) -> Array:
     return np.asarray(one[:, 2] * two[:, 0] - one[:, 0] * two[:, 2])
 
 
+class StrangersCast(Cast):
+    """A cast whose members are in nobody's way."""
+
+    def _bodies(self, number: int) -> tuple[Obstacle, ...]:
+        return ()
+
+
 class Unaware(Playground):
     """A playground whose characters are not told of one another."""
 
     def play(self, *given: object, **named: object) -> None:
         """Start a scenario with members that are in nobody's way."""
         super().play(*given, **named)  # type: ignore[arg-type]
-        for member in self.cast.members:
-            member._animator.obstacle = lambda velocity: None  # type: ignore[method-assign]
+        self.cast = StrangersCast(self.cast.members)
 
 
 class Watch:
