@@ -7,6 +7,7 @@ import numpy as np
 from cubeling.affect import Personality
 from cubeling.app.pipeline.scenario import Inputs, Outcome
 from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.scenarios.follow import PLAYER_POSITION
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.shake_reaction import ShakeReaction
@@ -18,10 +19,6 @@ from cubeling.characters import (
     RootDelta,
 )
 from cubeling.tracking import CubeControls
-
-PLAYER_POSITION = np.array([0.0, 2.0])
-"""A point far towards the camera, (x, z) on the table [m]: where the player sits."""
-
 
 AWAY_M, HOME_M = 0.06, 0.03
 """Who was driven further than the first from its place goes back there, nearer than the second

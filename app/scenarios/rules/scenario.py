@@ -8,6 +8,7 @@ import numpy as np
 from cubeling.affect import Personality
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.scenarios.follow import PLAYER_POSITION
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.rules.file import Rule, RuleSet, event_of, read_rules
@@ -20,9 +21,6 @@ HOME = RootDelta(-0.14, 0.0, 0.1)
 
 CLEARANCE_M = 0.1
 """How far from the cube's centre a character stops that goes to it [m]."""
-
-PLAYER = np.array([0.0, 2.0])
-"""A point far towards the camera, (x, z) on the table [m]: where the player sits."""
 
 
 class RulesScenario:
@@ -125,13 +123,15 @@ def _way(intent: Intent, moment: Moment) -> LocomotionIntent:
     """Return where an intent lets the character go, and that it faces the player when it stands."""
     cube, character = moment.controls.position, moment.situation.character
     if intent.go == "home":
-        return LocomotionIntent(PACES[intent.pace], np.array([HOME.x, HOME.z]), facing=PLAYER)
+        return LocomotionIntent(
+            PACES[intent.pace], np.array([HOME.x, HOME.z]), facing=PLAYER_POSITION
+        )
     if intent.go == "cube" and cube is not None and character is not None:
         offset = character.table_from_character[[0, 2], 3] - cube
         distance = float(np.linalg.norm(offset))
         place = cube + offset * (min(CLEARANCE_M, distance) / max(distance, 1e-9))
-        return LocomotionIntent(PACES[intent.pace], place, facing=PLAYER)
-    return LocomotionIntent(facing=PLAYER)
+        return LocomotionIntent(PACES[intent.pace], place, facing=PLAYER_POSITION)
+    return LocomotionIntent(facing=PLAYER_POSITION)
 
 
 def rules_scenario(path: str) -> type[RulesScenario]:
