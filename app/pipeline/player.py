@@ -48,22 +48,20 @@ class CubePlayer:
     def play(self, frame: Frame, markers: FrameMarkers, first: CubeControls) -> PlayerStep:
         """Find the cube, and tell what the hand does with it on the table of the `first` player."""
         state = self.tracked.track(frame, markers)
-        controls = on_table_of(first, self.gesture(state), state)
+        controls = on_table_of(first, self.gesture(state))
         return PlayerStep(self.name, state, controls, self.cube.edge)
 
 
-def on_table_of(first: CubeControls, controls: CubeControls, state: CubeState) -> CubeControls:
+def on_table_of(first: CubeControls, controls: CubeControls) -> CubeControls:
     """Return a player's controls on the table of the first player, which all characters share.
 
-    Where that is not known yet, the cube has no place on it.
+    Where either table is not known yet, the cube has no place on it.
     """
-    table, pose = first.camera_from_table, state.camera_from_cube
-    if table is None or controls.camera_from_table is None:
+    table, own, place = first.camera_from_table, controls.camera_from_table, controls.position
+    if table is None or own is None or place is None:
         return replace(controls, camera_from_table=table, position=None)
-    if pose is None:
-        return replace(controls, camera_from_table=table)
-    place = np.linalg.inv(table) @ pose[:, 3]
-    return replace(controls, camera_from_table=table, position=np.asarray(place[[0, 2]], float))
+    moved = np.linalg.inv(table) @ own @ [place[0], 0.0, place[1], 1.0]
+    return replace(controls, camera_from_table=table, position=np.asarray(moved[[0, 2]], float))
 
 
 def check_players(cubes: Sequence[CubeModel]) -> None:

@@ -12,7 +12,7 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, session_info
-from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics, se3
+from cubeling.tracking import CubeModel, Frame, Intrinsics, se3
 from tests.app import session_parts
 from tests.app.scripted import Blank
 from tests.bench.keep_clear import TABLE
@@ -129,14 +129,18 @@ def test_cubes_that_share_a_marker_are_refused():
     check_players([cube, *map(CubeModel.load, ("locomotion-2", "companion", "companion-2"))])
 
 
-def test_a_lost_cube_has_no_place_of_its_own(hand):
+def test_a_lost_cube_stays_where_it_was_on_the_table_of_the_first(hand):
+    """Its own table lies elsewhere and is turned: its last place is told there."""
+    shift = np.eye(4)
+    shift[:3, :3] = se3.rotation(np.array([0.0, np.pi / 2, 0.0]))
+    shift[:3, 3] = 0.3, 0.0, 0.1
     first = hand.frame(camera_from_table=TABLE)
-    lost = CubeState(
-        False, None, np.full(6, np.nan), np.full((6, 6), np.nan), "markers", (), 0.1, 1.0
-    )
-    moved = on_table_of(first, replace(first, visible=False), lost)
-    assert moved.camera_from_table is first.camera_from_table
-    unknown = on_table_of(first, replace(first, camera_from_table=None), lost)
+    own = replace(first, camera_from_table=TABLE @ shift, position=np.array([0.02, 0.0]))
+    seen, lost = (on_table_of(first, replace(own, visible=each)) for each in (True, False))
+    assert lost.camera_from_table is first.camera_from_table
+    assert lost.position == pytest.approx([0.3, 0.08])
+    assert np.array_equal(seen.position, lost.position)
+    unknown = on_table_of(first, replace(own, camera_from_table=None))
     assert unknown.position is None
 
 
