@@ -136,13 +136,9 @@ class Step:
             "/character/pose": self.posed,
             "/robot/emotion": self.emotion,
             **{
-                f"/cast/{each.name}/{part}": message
-                for each in self.others
-                for part, message in each.messages().items()
-            },
-            **{
-                f"/cubes/{each.name}/{part}": message
-                for each in self.players
+                f"/{folder}/{each.name}/{part}": message
+                for folder, further in (("cast", self.others), ("cubes", self.players))
+                for each in further
                 for part, message in each.messages().items()
             },
         }

@@ -29,7 +29,7 @@ class Cast:
     def decide(self, seen: Sequence[SeenCube], inputs: Inputs) -> list[Outcome]:
         """Let each scenario decide; `seen` are the cubes of the players."""
         return [
-            member.decide(self._cube_of(member, seen), told)
+            member.decide(seen[member.player], told)
             for member, told in zip(self.members, self._told(inputs), strict=True)
         ]
 
@@ -51,7 +51,7 @@ class Cast:
         for number, (member, told) in enumerate(zip(self.members, self._told(inputs), strict=True)):
             beside = () if len(self.members) == 1 else self._bodies(number)
             command = member.command(
-                self._cube_of(member, seen),
+                seen[member.player],
                 decisions[number],
                 told,
                 (*things, *beside),
@@ -74,9 +74,6 @@ class Cast:
             member.performance(command, decision)
             for member, command, decision in zip(self.members, commands, decisions, strict=True)
         )[1:]
-
-    def _cube_of(self, member: CastMember, seen: Sequence[SeenCube]) -> SeenCube:
-        return seen[member.player]
 
     def _bodies(self, number: int) -> tuple[Obstacle, ...]:
         """Return the others as they are in the way of one of the members."""

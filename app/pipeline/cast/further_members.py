@@ -11,8 +11,8 @@ from cubeling.app.pipeline.scenario import Scenario
 from cubeling.app.pipeline.table.attention import Attention
 from cubeling.characters import Character, RootDelta
 
-PLACES = ((0.17, -0.03), (0.05, -0.19), (-0.13, -0.20), (0.25, -0.18))
-"""Where they stand at first, (x, z) on the table [m]: beside and behind the cube, so that each is
+FURTHER_PLACES_M = ((0.17, -0.03), (0.05, -0.19), (-0.13, -0.20), (0.25, -0.18))
+"""Where they stand at first, (x, z) on the table: beside and behind the cube, so that each is
 seen and the scenarios' own character, on the left, has its way."""
 
 PLAYER_Z_M = 0.6
@@ -59,7 +59,7 @@ def further_members(
     members = []
     for number, (name, character) in enumerate(zip(names, characters, strict=True)):
         seed = zlib.crc32(name.encode())
-        x, z = PLACES[number]
+        x, z = FURTHER_PLACES_M[number]
         place = RootDelta(x, z, math.atan2(-x, PLAYER_Z_M - z))
         player = number + 1 if number < len(led) else 0
         scenario = led[number] if player else waiting(place, number + 1)

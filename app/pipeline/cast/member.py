@@ -87,7 +87,7 @@ class CastMember:
         """Its body then."""
         self.speaking = Speaking()
         self.complexion = Complexion()
-        self._velocity = np.zeros(3)
+        self._before: PosedCharacter | None = None
 
     def _take(self, character: Character, animator: Animator) -> None:
         check_actions(self.scenario, character.name, animator.actions)
@@ -140,9 +140,8 @@ class CastMember:
 
     def perform(self, command: CharacterCommand, posed: PosedCharacter | None = None) -> PosedBody:
         """Advance to the time of a command, or take a recorded pose, and return the body."""
-        before, posed = self.posed, posed or self._animator.update(command)
-        self._velocity = _velocity(before, posed)
-        self.posed, self.body = posed, self.body_of(posed)
+        posed = posed or self._animator.update(command)
+        self._before, self.posed, self.body = self.posed, posed, self.body_of(posed)
         self.complexion.update(command.timestamp, command.emotion)
         return self.body
 
@@ -167,7 +166,7 @@ class CastMember:
         """Its body as it is in the way of others; None where it is not seen on the table."""
         if self.posed is None or not self.posed.visible:
             return None
-        return self._animator.obstacle(self._velocity)
+        return self._animator.obstacle(_velocity(self._before, self.posed))
 
 
 def _velocity(before: PosedCharacter | None, now: PosedCharacter) -> NDArray[np.float64]:

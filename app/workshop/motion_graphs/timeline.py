@@ -37,7 +37,7 @@ CLIP_COLORS = ("#8fbbdb", "#eba06d", "#8ccdb3", "#d3a5c6", "#e8dc8a", "#b9bfcb")
 """Colours of the clips in the order in which they play, pale enough to write on: those of Okabe and
 Ito 2008, which colour-blind people can tell apart. More clips have them again, with a pattern."""
 
-HATCHES = ("", "///", "---", "xxx")
+CLIP_PATTERNS = ("", "///", "---", "xxx")
 """Patterns of the first six clips, the next six …"""
 
 
@@ -80,7 +80,7 @@ def save_timeline(
 def _style(place: int) -> dict[str, Any]:
     """Return how a clip is drawn, by its place among those that are shown."""
     again, color = divmod(place, len(CLIP_COLORS))
-    hatch = HATCHES[min(again, len(HATCHES) - 1)]
+    hatch = CLIP_PATTERNS[min(again, len(CLIP_PATTERNS) - 1)]
     return {"facecolor": CLIP_COLORS[color], "hatch": hatch, "edgecolor": "#ffffff", "linewidth": 0}
 
 

@@ -136,12 +136,12 @@ class TransitionSummary:
 
     @property
     def response(self) -> float:
-        """Mean response [frames]."""
+        """Mean time from a request until the first part leaves [frames]."""
         return float(np.mean([outcome.response for outcome in self.outcomes]))
 
     @property
     def median_response(self) -> float:
-        """Median response [frames]."""
+        """Its median, which a few late answers do not move [frames]."""
         return float(np.median([outcome.response for outcome in self.outcomes]))
 
     @property

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.cast.further_members import PLACES, distinct_names
+from cubeling.app.pipeline.cast.further_members import FURTHER_PLACES_M, distinct_names
 from cubeling.app.pipeline.choices import MAX_CAST, cast_of
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs
@@ -62,7 +62,7 @@ def test_each_name_is_there_once_and_fits_into_a_topic():
 
 
 def test_there_is_a_place_for_everyone():
-    assert len(PLACES) == MAX_CAST - 1
+    assert len(FURTHER_PLACES_M) == MAX_CAST - 1
 
 
 def test_others_live_on_the_table_and_the_lead_is_as_it_is_alone(table):
