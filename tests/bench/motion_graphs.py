@@ -51,11 +51,13 @@ from cubeling.characters.synthesis.transitions.comparison import (
     common_requests,
 )
 from cubeling.characters.synthesis.transitions.evaluation import graph_requests, merge_answers
+from cubeling.characters.synthesis.transitions.live import Goals, PartsSource
 from cubeling.characters.synthesis.transitions.progressive import SearchSettings, TransitionPlanner
 
 CMU = Path(__file__).parents[3] / "shared" / "data" / "cmu-mocap"
 FRAMES, MAX_GRAPH_S, MAX_MEMORY_MB, MAX_QUERY_MS = 6600, 10.0, 500.0, 5.0
 MAX_LATE_QUERY_MS, MAX_STEP_MS = 20.0, 1e3 / 60
+FRAMES_OF_PLAY = 12  # after a request: planning takes fewer than the body has parts
 
 KINDS = {
     "walk": ("16_15", "16_16", "16_31", "16_32", "02_01"),
@@ -276,21 +278,28 @@ def speed(console: Console, count: int) -> bool:
     table.add_row("the same, 90th percentile", f"{late:.1f} ms", f"{MAX_LATE_QUERY_MS:g} ms")
     table.add_row("the same, longest", f"{max(times):.1f} ms", "")
     table.add_row(
-        "most of it in one frame of play, 90th percentile, longest",
+        "most of a frame of play after it, 90th percentile, longest",
         f"{np.percentile(steps, 90):.1f}, {max(steps):.1f} ms",
         f"{MAX_STEP_MS:.1f} ms",
     )
     table.add_row("requests in which a part follows the legs", f"{followed} of {count}", "")
     console.print(table)
-    return graph_s <= MAX_GRAPH_S and memory <= MAX_MEMORY_MB and late <= MAX_LATE_QUERY_MS
+    return (
+        graph_s <= MAX_GRAPH_S
+        and memory <= MAX_MEMORY_MB
+        and late <= MAX_LATE_QUERY_MS
+        and max(steps) <= MAX_STEP_MS
+    )
 
 
 def _ask(
     planner: TransitionPlanner, parts: PartGraphs, count: int
 ) -> tuple[list[float], list[float], int]:
-    """Return the times of requests in play and of their longest steps [ms].
+    """Return the times of requests, and of the longest frames of play they lead to [ms].
 
-    The last is in how many of them a part follows the legs.
+    A frame's time is all that the graph takes in it: the start of what was planned, too. Each is
+    played twice, and the less of two times counts. The last is in how many of them a part follows
+    the legs.
     """
     rng = np.random.default_rng(7)
     frames = parts.library
@@ -298,22 +307,32 @@ def _ask(
     goals = {clip: frames.clip_of == clip for clip in np.unique(frames.clip_of[kept]).tolist()}
     for each in goals.values():
         parts.graphs[0].to_go(each & parts.kept)
+    planner.prepare()
     times, longest, followed = [], [], 0
     for _ in range(count):
         request, target = int(rng.choice(kept)), goals[int(rng.choice([*goals]))]
-        planning, steps = planner.plan_in_steps(request, target), []
+        start = time.process_time()
+        planning = planner.plan_in_steps(request, target)
         while True:
-            start = time.process_time()
             try:
                 next(planning)
             except StopIteration as end:
                 followed += end.value.fallback == "legs"
                 break
-            finally:
-                steps.append(1e3 * (time.process_time() - start))
-        times.append(sum(steps))
-        longest.append(max(steps))
+        times.append(1e3 * (time.process_time() - start))
+        plays = [_frame_times(PartsSource(planner, request), target) for _ in range(2)]
+        longest.append(float(np.min(plays, axis=0).max()))
     return times, longest, followed
+
+
+def _frame_times(source: PartsSource, goals: Goals) -> list[float]:
+    """Return the times of the first frames after a request [ms]."""
+    times = []
+    for _ in range(FRAMES_OF_PLAY):
+        start = time.process_time()
+        source.advance(goals)
+        times.append(1e3 * (time.process_time() - start))
+    return times
 
 
 def joint_weights(console: Console) -> None:

@@ -307,6 +307,7 @@ def _parts(stored: StoredGraph) -> Playable:
         )
     behaviours = Behaviours.of(stored.library, graphs.kept)
     planner = TransitionPlanner(graphs, standard_graph(stored, LIVE_COSTS))
+    planner.prepare()
     to_stand = _prepare(graphs.graphs[0], behaviours)
     start = _standing_frame(behaviours)
     return behaviours, lambda: PartsSource(planner, start), to_stand

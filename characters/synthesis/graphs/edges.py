@@ -49,6 +49,10 @@ class Edges:
         keep = nodes[self.sources] & nodes[self.targets]
         return Edges(self.count, self.sources[keep], self.targets[keep], self.weights[keep])
 
+    def prepare(self) -> None:
+        """Sort the edges as searches of few jumps need them, which takes 10 ms for 10⁵ edges."""
+        _ = self.firsts, self.onward, self.by_target
+
     @cached_property
     def firsts(self) -> Nodes:
         """Number of the first edge of each node, and the number of edges, (nodes + 1,)."""

@@ -148,15 +148,34 @@ class HopCosts:
         It begins where it starts, so its length tells when it did.
         """
         sources, weights, reached, firsts = self.edges.by_target
-        nodes = [node]
-        while not (time < len(self.starts) and self.starts[time] == nodes[-1]):
-            place = int(np.searchsorted(reached, nodes[-1]))
+        nodes: list[int] = []
+        while True:
+            played, begins = self._played(node, time)
+            nodes += range(node, node - played, -1)
+            node, time = node - played, time - played
+            if begins:
+                return np.array([*nodes, node][::-1])
+            nodes.append(node)
+            place = int(np.searchsorted(reached, node))
             stop = firsts[place + 1] if place + 1 < len(firsts) else len(sources)
             own = sources[firsts[place] : stop]
             totals = self.costs[time - 1].take(own) + weights[firsts[place] : stop]
-            nodes.append(int(own[np.argmin(totals)]))
-            time -= 1
-        return np.array(nodes[::-1])
+            node, time = int(own[np.argmin(totals)]), time - 1
+
+    def _played(self, node: int, time: int) -> tuple[int, bool]:
+        """Return how many frames a cheapest path plays of a clip before a node.
+
+        And whether it begins there, instead of jumping.
+        """
+        back = np.arange(min(node, time) + 1)
+        costs = self.costs[time - back, node - back]
+        played = (costs[1:] + self.edges.onward[node - back[1:]]).astype(costs.dtype)
+        plays = np.append(costs[:-1] == played, False)
+        starts = np.full(len(self.costs), -1)
+        starts[: len(self.starts)] = self.starts[: len(self.costs)]
+        begins = starts[time - back] == node - back
+        last = int((begins | ~plays).argmax())
+        return last, bool(begins[last])
 
 
 def _lands(edges: Edges, sources: list[Nodes]) -> NDArray[np.bool_]:

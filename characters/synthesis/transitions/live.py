@@ -81,9 +81,9 @@ class StandardSource:
 class PartsSource:
     """Plays the graphs of the parts; a `GraphPlayback`.
 
-    A transition is planned for a frame that comes soon, a part of the body a frame, and played
-    until all parts have arrived. Where no frames come, it is planned at once. What was shown goes
-    over into it by a decaying offset.
+    A transition is planned for a frame that comes soon, a costly search a frame, and played until
+    all parts have arrived. Where too few frames come, parts without a way that is quickly found
+    follow the legs. What was shown goes over into it by a decaying offset.
     """
 
     def __init__(self, planner: TransitionPlanner, start: int) -> None:
@@ -173,7 +173,7 @@ class PartsSource:
 
 
 class _Planning:
-    """A transition that is planned a part at a time."""
+    """A transition that is planned over several frames."""
 
     def __init__(self, planner: TransitionPlanner, request: int, goals: Goals) -> None:
         self.request = request
@@ -188,18 +188,21 @@ class _Planning:
         return near and np.array_equal(goals, self._goals)
 
     def advance(self) -> None:
-        """Plan a part, if any is left."""
-        if self._found is None:
-            try:
-                next(self._steps)
-            except StopIteration as end:
-                self._found = end.value
+        """Plan on, with one costly search at most, if anything is left."""
+        self._take_step(None)
 
     def finish(self) -> Transition:
-        """Plan what is left and return the transition."""
+        """Return the transition, without the costly searches that are left."""
         while self._found is None:
-            self.advance()
+            self._take_step(True)
         return self._found
+
+    def _take_step(self, ends: bool | None) -> None:
+        if self._found is None:
+            try:
+                self._steps.send(ends)
+            except StopIteration as end:
+                self._found = end.value
 
 
 class LiveMotion:

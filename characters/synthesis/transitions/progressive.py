@@ -3,8 +3,9 @@
 Source: Fernández-Baena 2015, chapter 3.3 (M2.4).
 """
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain, islice, pairwise
 from typing import Literal
 
@@ -21,6 +22,10 @@ from cubeling.characters.synthesis.transitions.transition import PartMove, Trans
 
 Goals = NDArray[np.bool_]
 """Which frames meet a request, (frames,)."""
+
+Search = Generator[None, bool | None, PartMove | None]
+"""The search for a part's way, which yields before what is costly; where True is sent, it ends
+there without a way."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +88,11 @@ class TransitionPlanner:
         self.standard = standard
         self.settings = settings or SearchSettings()
 
+    def prepare(self) -> None:
+        """Sort the edges for searches, so that no frame of play has to."""
+        for graph in self.graphs.graphs:
+            graph.edges.prepare()
+
     def plan(self, request: int, goals: Goals) -> Transition:
         """Return the transition from a frame to any of the goals (frames,).
 
@@ -118,12 +128,13 @@ class TransitionPlanner:
         prior = _move(self.graphs.graphs[0], path)
         return self._complete(request, prior, self.settings.window)
 
-    def plan_in_steps(self, request: int, goals: Goals) -> Generator[None, None, Transition]:
-        """Plan a transition for play, one part between two yields, and return it.
+    def plan_in_steps(self, request: int, goals: Goals) -> Generator[None, bool | None, Transition]:
+        """Plan a transition for play, and return it; one costly search lies between two yields.
 
-        A part has a way of at most three jumps, or it follows the legs: in the windows, more jumps
-        are ten in a quarter of a second, which shake, and to look for them takes longer than a
-        frame lasts.
+        There are as many steps as parts, at most. Where True is sent, the costly search is left
+        out, and the part follows the legs. So it does where it has no way of at most three jumps:
+        in the windows, more are ten in a quarter of a second, which shake, and to look for them
+        takes longer than a frame lasts.
 
         Raises
         ------
@@ -134,8 +145,7 @@ class TransitionPlanner:
         prior = self._first(request, goals)
         moves, fallback = [prior], ""
         for part in range(1, len(self.graphs.parts)):
-            yield
-            move = self._bound(part, request, prior, self.settings.window, few=True)
+            move = yield from self._bound(part, request, prior, self.settings.window, few=True)
             if move is None:
                 move, fallback = replace(prior, cost=0.0), "legs"
             moves.append(move)
@@ -188,10 +198,12 @@ class TransitionPlanner:
 
     def _complete(self, request: int, prior: PartMove, window: int) -> Transition | None:
         """Return the transition in which all other parts follow the legs, or None."""
-        find = self._bound if self.settings.search == "bounded" else self._shortest
-        moves = [prior]
+        bounded, moves = self.settings.search == "bounded", [prior]
         for part in range(1, len(self.graphs.parts)):
-            move = find(part, request, prior, window)
+            if bounded:
+                move = _all_steps(self._bound(part, request, prior, window))
+            else:
+                move = self._shortest(part, request, prior, window)
             if move is None:
                 return None
             moves.append(move)
@@ -232,8 +244,11 @@ class TransitionPlanner:
 
     def _bound(
         self, part: int, request: int, prior: PartMove, window: int, few: bool = False
-    ) -> PartMove | None:
-        """Return the cheapest path whose length fits; of `few` jumps, if so."""
+    ) -> Search:
+        """Return the cheapest path whose length fits; of `few` jumps, if so.
+
+        Of the tables of costs, the first is quickly made.
+        """
         starts, arrivals = self._windows(request, prior, window)
         first = next((time for time, start in enumerate(starts) if start >= 0), None)
         if first is None:  # the clip ends before
@@ -244,9 +259,13 @@ class TransitionPlanner:
         fits = (np.abs(ends - times[:, None]) <= near[:, None]) & (ends > first)
         ends = np.where(fits, ends, first) - first
         target = int(prior.frames[-1]) - (prior.arrival - first)
-        for table in self._tables(
+        tables = self._tables(
             part, tuple(starts[first:]), int(ends.max()), target, int(near.max()), few
-        ):
+        )
+        for number, make in enumerate(tables):
+            if number and (yield):
+                return None
+            table = make()
             costs = np.where(fits, table.costs[ends, frames[:, None]], np.inf)
             for option in np.argsort(costs, axis=None).tolist():
                 row, column = divmod(option, costs.shape[1])
@@ -261,14 +280,16 @@ class TransitionPlanner:
 
     def _tables(
         self, part: int, starts: tuple[int, ...], hops: int, target: int, slack: int, few: bool
-    ) -> Iterator[HopCosts]:
-        """Yield the costs of a part's paths: in a large graph first of those of few jumps."""
+    ) -> list[Callable[[], HopCosts]]:
+        """Return what makes tables of a part's paths: in a large graph first of few jumps."""
         edges = self.graphs.graphs[part].edges
-        if few or len(edges) > self.settings.many_edges:
-            yield HopCosts.of_few_jumps(edges, starts, hops, target, slack)
-            yield HopCosts.of_few_jumps(edges, starts, hops, target, slack, between=True)
-        if not few:
-            yield HopCosts.of(edges, starts, hops)
+        jumps = partial(HopCosts.of_few_jumps, edges, starts, hops, target, slack)
+        every = partial(HopCosts.of, edges, starts, hops)
+        if few:
+            return [jumps, partial(jumps, between=True)]
+        if len(edges) > self.settings.many_edges:
+            return [jumps, partial(jumps, between=True), every]
+        return [every]
 
     def _shortest(self, part: int, request: int, prior: PartMove, window: int) -> PartMove | None:
         """Return the cheapest of the cheapest paths between both windows whose lengths fit."""
@@ -320,6 +341,16 @@ def cheapest_plan(
     able = [each for each in planners if each.graphs.kept[request]] or planners
     plans = [(each.graphs, each.plan(request, goals)) for each in able]
     return _cheapest(plans)
+
+
+def _all_steps(search: Search) -> PartMove | None:
+    """Take all steps of a search and return what it found."""
+    while True:
+        try:
+            next(search)
+        except StopIteration as end:
+            found: PartMove | None = end.value
+            return found
 
 
 def _cheapest(plans: Sequence[tuple[PartGraphs, Transition]]) -> tuple[PartGraphs, Transition]:
