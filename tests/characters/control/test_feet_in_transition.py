@@ -80,3 +80,11 @@ def test_a_foot_in_the_air_follows_the_transition(vleo: Character) -> None:
 def test_after_a_transition_poses_are_left_alone(vleo: Character) -> None:
     shown = bent(vleo)
     assert FeetInTransition(vleo).hold(shown, shown, 1.0, LENGTH_S, LENGTH_S) is shown
+
+
+def test_held_feet_stay_at_the_ends_of_their_legs(vleo: Character) -> None:
+    feet, own = FeetInTransition(vleo), vleo.skeleton.rest
+    feet.hold(own, own, 1.0, 0.0, LENGTH_S)
+    held = feet.hold(bent(vleo), own, 1.0, 0.1, LENGTH_S)
+    assert not np.allclose(held.rotations, bent(vleo).rotations, atol=1e-4)
+    assert np.allclose(held.translations, own.translations, atol=1e-12)
