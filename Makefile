@@ -109,7 +109,6 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.video_codecs
 	$(BIN)/python -m tests.bench.recording
 	-$(BIN)/python -m tests.bench.animation
-	$(BIN)/python -m tests.bench.crowd
 	-$(BIN)/python -m tests.bench.cast_picture
 	$(BIN)/python -m tests.bench.mocap
 	$(BIN)/python -m tests.bench.retarget

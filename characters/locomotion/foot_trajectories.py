@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cubeling.characters.ik.legs import LegIK
-from cubeling.characters.motion.batch.bank import ClipBank
+from cubeling.characters.locomotion.clip_bank import ClipBank
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.contacts import find_contacts
 from cubeling.characters.motion.motion import RootDelta

@@ -1,4 +1,4 @@
-"""Many clips in one table, to sample and mix clips for many characters at once.
+"""Many clips in one table, from which a mixed pose is taken with one product.
 
 A row of the table is a pose, and a mixed pose is a weighted sum of rows. Quaternions between two
 frames are mixed before they are normalised: in a mix of very different motions a joint may deviate
@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.motion.clip import Clip
@@ -22,7 +22,6 @@ from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 Indices = NDArray[np.intp]
 Floats = NDArray[Any]
 
-_CHARACTERS_PER_BLOCK = 64  # rows of so many characters fit into the cache
 _CONSTANT_TOLERANCE = 1e-7  # [m] or relative scale: smaller changes count as constant
 
 
@@ -124,46 +123,11 @@ class ClipBank:
     def __len__(self) -> int:
         return len(self.starts)
 
-    def rows(self, clips: ArrayLike, times: ArrayLike) -> tuple[Indices, Array]:
-        """Return the row at or before each time, (…), and the fraction towards the next row.
-
-        Times are since the starts of the clips [s], (…); loops repeat, other clips hold their ends.
-        """
-        number = np.asarray(clips, np.intp)
-        last = self.last_frames[number]
-        at = np.asarray(times, float) * self.rates[number]
-        safe = np.maximum(last, 1.0)
-        at = np.where(self.loops[number], np.mod(at, safe), np.clip(at, 0.0, last))
-        frame = np.minimum(at.astype(np.intp), np.maximum(last - 1.0, 0.0).astype(np.intp))
-        return self.starts[number] + frame, np.where(last > 0, at - frame, 0.0)
-
-    def mixed_rows(self, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Floats:
-        """Return weighted sums of rows, (characters, columns), with quaternions not yet normalised.
-
-        Parameters
-        ----------
-        clips, times
-            Clip numbers and times [s] for each character, (characters, clips of each).
-        weights
-            Their weights, (characters, clips of each); each row sums to one.
-        """
-        row, u = self.rows(clips, times)
-        share = np.asarray(weights, float)
-        factors = np.concatenate([share * (1.0 - u), share * u], axis=-1).astype(self.table.dtype)
-        numbers = np.concatenate([row, row + 1], axis=-1)
-        total = np.empty((len(numbers), self.table.shape[1]), self.table.dtype)
-        for first in range(0, len(numbers), _CHARACTERS_PER_BLOCK):
-            block = slice(first, first + _CHARACTERS_PER_BLOCK)
-            looked_up = self.table.take(numbers[block], axis=0)
-            np.matmul(factors[block, None], looked_up, out=total[block, None])
-        self._mix_sign_ambiguous(numbers, factors, total)
-        return total
-
     def blend(self, contributions: Sequence[tuple[int, float, float]]) -> tuple[Pose, Floats]:
-        """Return the mixed pose of one character, and its mixed extra values, (columns,).
+        """Return a mixed pose, and the mixed extra values, (columns,).
 
-        Equal to `mixed_rows` and `pose`, faster for one character. A contribution is the number of
-        a clip, the time since its start [s], and its weight.
+        A contribution is the number of a clip, the time since its start [s], and its weight. Loops
+        repeat, other clips hold their ends.
         """
         rows: list[int] = []
         factors: list[float] = []
@@ -174,8 +138,8 @@ class ClipBank:
         share = np.array(factors, self.table.dtype)
         mixed = share @ self.table.take(rows, axis=0)
         if self.sign_ambiguous.size:
-            self._mix_sign_ambiguous(np.array([rows]), share[None], mixed[None])
-        rotation_end, translation_end, scale_end, morph_end = self.column_ends
+            self._mix_sign_ambiguous(rows, share, mixed)
+        rotation_end, translation_end, scale_end, morph_end = self._column_ends
         turns = mixed[:rotation_end].reshape(-1, 4)
         turns = turns / np.sqrt(np.vecdot(turns, turns))[:, None]
         translations, scales = self.constant.translations.copy(), self.constant.scales
@@ -187,7 +151,7 @@ class ClipBank:
         return Pose(translations, turns, scales, morphs), mixed[morph_end:]
 
     def _row(self, clip: int, time: float) -> tuple[int, float]:
-        """Return the same as `rows` for one time."""
+        """Return the row at or before a time [s], and the fraction towards the next row."""
         start, last, rate, loop = self._clips[clip]
         if last == 0.0:
             return start, 0.0
@@ -203,61 +167,27 @@ class ClipBank:
         return list(zip(*(column.tolist() for column in columns), strict=True))
 
     @cached_property
-    def column_ends(self) -> tuple[int, int, int, int]:
+    def _column_ends(self) -> tuple[int, int, int, int]:
         """Ends of quaternions, translations, scales and morphs in a row."""
         turned = 4 * len(self.skeleton)
         shifted = turned + 3 * self.moving.size
         sized = shifted + 3 * self.scaling.size
         return turned, shifted, sized, self.table.shape[1] - self.extra_columns
 
-    def sample(self, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Pose:
-        """Return mixed poses, (characters, joints, …); see `mixed_rows` for the arguments."""
-        return self.pose(self.mixed_rows(clips, times, weights))
-
-    def pose(self, rows: Floats) -> Pose:
-        """Return rows (characters, columns) as poses with normalised quaternions."""
-        count, joints = len(rows), len(self.skeleton)
-        turns, shifts, scales, morphs, _ = np.split(rows, self.column_ends, axis=1)
-        turns = turns.reshape(count, joints, 4)
-        turns = turns / np.sqrt(np.einsum("cji,cji->cj", turns, turns))[..., None]
-        translations = np.tile(self.constant.translations, (count, 1, 1))
-        translations[:, self.moving] = shifts.reshape(count, -1, 3)
-        all_scales = None
-        if self.constant.scales is not None:
-            all_scales = np.tile(self.constant.scales, (count, 1, 1))
-            all_scales[:, self.scaling] = scales.reshape(count, -1, 3)
-        return Pose(translations, turns, all_scales, morphs if morphs.shape[1] else None)
-
-    def _mix_sign_ambiguous(self, numbers: Indices, factors: Floats, total: Floats) -> None:
-        """Mix the sign-ambiguous joints again, with signs aligned to the row of largest weight.
-
-        Rows `numbers` (characters, rows) are mixed by `factors` (characters, rows) into `total`
-        (characters, columns).
-        """
-        if not self.sign_ambiguous.size:
-            return
-        turns = self._sign_ambiguous_table.take(numbers, axis=1)  # (4 n, characters, rows)
-        heaviest = np.arange(len(numbers)), factors.argmax(1)
-        for number, joint in enumerate(self.sign_ambiguous.tolist()):
-            own = turns[4 * number : 4 * number + 4]
-            dots = sum(part * part[heaviest][:, None] for part in own)
-            signed = np.where(dots < 0, -factors, factors)
-            total[:, 4 * joint : 4 * joint + 4] = np.einsum("kcv,cv->ck", own, signed)
+    def _mix_sign_ambiguous(self, rows: list[int], share: Floats, mixed: Floats) -> None:
+        """Mix the sign-ambiguous joints again, with signs aligned to the row of largest weight."""
+        turns = self._sign_ambiguous_table.take(rows, axis=0)
+        near = np.einsum("rjk,jk->rj", turns, turns[share.argmax()])
+        signed = np.where(near < 0.0, -share[:, None], share[:, None])
+        columns = 4 * self.sign_ambiguous[:, None] + np.arange(4)
+        mixed[columns] = np.einsum("rj,rjk->jk", signed, turns)
 
     @cached_property
     def _sign_ambiguous_table(self) -> Floats:
-        """Components of the sign-ambiguous quaternions, (4 n, rows)."""
-        columns = (4 * self.sign_ambiguous[:, None] + np.arange(4)).ravel()
-        return np.ascontiguousarray(self.table[:, columns].T)
-
-    @cached_property
-    def non_unit_scale(self) -> Indices:
-        """Joints with scales other than one, (n,)."""
-        if self.constant.scales is None:
-            return np.zeros(0, np.intp)
-        uneven = np.abs(self.constant.scales - 1.0).max(-1) > _CONSTANT_TOLERANCE
-        uneven[self.scaling] = True
-        return np.flatnonzero(uneven)
+        """The sign-ambiguous quaternions, (rows, n, 4)."""
+        return self.table[:, : 4 * len(self.skeleton)].reshape(len(self.table), -1, 4)[
+            :, self.sign_ambiguous
+        ]
 
 
 def _repeat_single_frame(pose: Pose) -> Pose:

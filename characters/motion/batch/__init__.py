@@ -1,1 +1,0 @@
-"""Many clips for many characters at once."""
