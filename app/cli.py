@@ -50,7 +50,7 @@ GROUPS = {
         "dictionary.",
         "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
         "speech": "Look at recorded speech: its pitch, accents, words and phones.",
-        "ik": "Measure the solvers of inverse kinematics.",
+        "reproduce": "Make the printed tables of the four works again, beside what they print.",
     },
     "Robots": {
         "robot": "Simulate, try out and test robots, and list the serial ports.",
@@ -73,7 +73,10 @@ COMMANDS = {name: summary for group in GROUPS.values() for name, summary in grou
 FORMER_SPELLINGS = {"lang": "language", "window-size": "size", "camera": "source"}
 """What options were called in old versions, which still works."""
 
-RENAMED = {"gestures": "cubeling gesture, and its show cubeling gesture library"}
+RENAMED = {
+    "gestures": "cubeling gesture, and its show cubeling gesture library",
+    "ik": "cubeling reproduce ik-methods",
+}
 """What commands of old versions are called now."""
 
 

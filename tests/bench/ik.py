@@ -1,6 +1,6 @@
 """How the solvers of inverse kinematics do: `python -m tests.bench.ik`.
 
-The tables of `cubeling ik bench`; then for chains of six joints with limits:
+The tables of `cubeling reproduce ik-methods`; then for chains of six joints with limits:
 
 oracle
     `scipy.optimize.least_squares` with bounds on the same problems: share solved, time, and summed
@@ -26,15 +26,15 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.commands.study.ik_figures import (
+from cubeling.app.commands.study.reproduce import shown_table
+from cubeling.app.workshop.reproduction.ik_figures import (
     CHAIN_SIZES,
     AloneFigures,
     SureFigures,
-    alone_table,
     measure_alone,
     measure_sure,
-    sure_table,
 )
+from cubeling.app.workshop.reproduction.ik_methods import alone_table, printed_table, sure_table
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.reaching import UpperBody
 from cubeling.characters.ik.reaching.arms import (
@@ -239,8 +239,9 @@ def main() -> int:
         for method in SOLVERS:
             alone.append(measure_alone(method, joints, options.targets))
             sure.append(measure_sure(method, joints, options.targets))
-    console.print(alone_table(alone, options.targets))
-    console.print(sure_table(sure))
+    console.print(shown_table(printed_table(alone)))
+    console.print(shown_table(alone_table(alone)))
+    console.print(shown_table(sure_table(sure)))
     console.print(oracle_table(min(options.targets, 100)))
     if DATA.is_dir():
         console.print(wrist_table())

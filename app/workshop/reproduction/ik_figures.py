@@ -1,15 +1,13 @@
-"""The figures and tables of `cubeling ik bench`."""
+"""How solvers of inverse kinematics do on chains of 6 and 10 joints: what table 7.1 measures."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from rich.table import Table
 
 from cubeling.characters.motion import (
     REACH_M,
-    TOLERANCE,
     ReachingProblem,
     SingleChain,
     arc_targets,
@@ -20,16 +18,6 @@ from cubeling.characters.motion import (
     violations,
     zig_zag,
 )
-
-PRINTED: dict[str, dict[int, tuple[float, float]]] = {
-    "springs-force": {6: (49.6, 0.195), 10: (60.5, 0.253)},
-    "springs": {6: (26.9, 0.132), 10: (40.1, 0.169)},
-    "ccd": {6: (33.2, 0.131), 10: (39.7, 0.148)},
-    "pseudo-inverse": {6: (51.8, 1.095), 10: (55.9, 1.310)},
-    "transpose": {6: (6.8, 0.124), 10: (17.1, 0.235)},
-    "damped": {6: (55.6, 1.237), 10: (68.7, 1.450)},
-}
-"""Table 7.1 of Huang: iterations and milliseconds of each method, by the number of joints."""
 
 CHAIN_SIZES = (6, 10)
 """Joints of the chains of the tables."""
@@ -213,70 +201,3 @@ def twist_while_following(
     ways = np.stack(postures[2:])  # the first one is still on its way to the path
     twists = [twist(problem.chains, start[0], ways[:, number]) for number in range(_FOLLOWED)]
     return float(np.nanquantile(twists, 0.999))
-
-
-def alone_table(figures: Sequence[AloneFigures], count: int) -> Table:
-    """Return the figures of the methods alone; below each, what the thesis prints."""
-    table = _table(
-        f"Table 7.1 again: {count} random targets, within {TOLERANCE:g} of the chain",
-        ("alone", "joints", "steps", "ms\nalone", "µs in\na batch", "solved", "in\nlimits",
-         "change", "zig-\nzag", "twist\nper cm"),
-    )  # fmt: skip
-    for each in figures:
-        table.add_row(
-            each.method,
-            f"{each.joints}",
-            f"{each.iterations:.1f}",
-            f"{each.single_ms:.2f}",
-            f"{each.batch_us:.1f}",
-            f"{each.solved:.1%}",
-            f"{each.in_limits:.1%}",
-            f"{each.change_deg:.0f}°",
-            f"{each.zig_zag:.2f}",
-            f"{each.twist_deg:.1f}°",
-        )
-        steps, time_ms = PRINTED.get(each.method, {}).get(each.joints, (None, None))
-        if steps is not None or time_ms is not None:
-            printed = (
-                "" if steps is None else f"{steps}",
-                "" if time_ms is None else f"{time_ms:.2f}",
-            )
-            table.add_row("  printed", "", *printed, style="dim")
-    return table
-
-
-def sure_table(figures: Sequence[SureFigures]) -> Table:
-    """Return the figures of the methods with what all share."""
-    table = _table(
-        "Within limits, made sure",
-        ("begun by", "joints", "steps", "µs in\na batch", "solved", "beyond\nlimits", "change",
-         "zig-\nzag", "twist\nper cm"),
-    )  # fmt: skip
-    for each in figures:
-        table.add_row(
-            each.method,
-            f"{each.joints}",
-            f"{each.iterations:.1f}",
-            f"{each.batch_us:.1f}",
-            f"{each.solved:.2%}",
-            f"{each.violations}",
-            f"{each.change_deg:.0f}°",
-            f"{each.zig_zag:.2f}",
-            f"{each.twist_deg:.1f}°",
-        )
-    return table
-
-
-def _table(title: str, headings: Sequence[str]) -> Table:
-    """Return an empty table, so narrow that its figures fit into 80 columns."""
-    table = Table(
-        title=title,
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
-    for index, heading in enumerate(headings):
-        table.add_column(heading, justify="right" if index else "left", no_wrap=True)
-    return table
