@@ -21,7 +21,7 @@ table { border-collapse: collapse; margin: 1em 0; } caption { text-align: left; 
 td, th { padding: .25em .8em; text-align: right; vertical-align: top; }
 th { font-weight: 600; border-bottom: 1px solid #9aa1b2; } tr { border-bottom: 1px solid #dcdfe6; }
 td:first-child, th:first-child { text-align: left; } .printed { color: #6d7385; }
-.text td { text-align: left; } .wide { overflow-x: auto; } .missing { color: #6d7385; }
+.text td, .text th { text-align: left; } .wide { overflow-x: auto; } .missing { color: #6d7385; }
 nav a { margin-right: 1.2em; }"""
 
 
