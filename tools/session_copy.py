@@ -12,7 +12,7 @@ from cubeling.app.session.recorder import CHUNK_BYTES, json_schema
 from cubeling.app.session.session_file import SessionFile
 
 INPUT_TOPICS = (IMAGE_TOPIC, "/camera/calibration", INPUTS_TOPIC, LINE_TOPIC, "/events")
-"""The channels of what came in."""
+"""The channels of what came in, besides the sound of what further characters say."""
 
 Change = Callable[[str, float, bytes], bytes | None]
 """Takes a message's topic, its time [s] and its bytes; returns those to write, or None to drop."""
@@ -26,9 +26,11 @@ def keep_inputs(session: Path, path: Path) -> None:
     """
     with SessionFile(session) as recorded:
         added = {} if recorded.has(INPUTS_TOPIC) else recorded.inputs
-    copy_session(
-        session, path, lambda topic, _, data: data if topic in INPUT_TOPICS else None, added
-    )
+    copy_session(session, path, lambda topic, _, data: data if _came_in(topic) else None, added)
+
+
+def _came_in(topic: str) -> bool:
+    return topic in INPUT_TOPICS or (topic.startswith("/cast/") and topic.endswith("/line"))
 
 
 def copy_session(

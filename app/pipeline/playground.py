@@ -313,8 +313,9 @@ class Playground:
         self._lap("appearance")
         inputs = inputs or Inputs()
         cast = self.cast
+        told = cast.hear(inputs, controls.timestamp)
         seen = [SeenCube(state, controls), *(SeenCube(p.state, p.controls) for p in played)]
-        decisions = cast.decide(seen, inputs)
+        decisions = cast.decide(seen, told)
         for player, cube in zip(self.players, seen, strict=True):
             player.tracked.advise(frame, cube.state)
         self._lap("scenario")
@@ -324,18 +325,15 @@ class Playground:
             for each in player.obstacles.update(cube.state, cube.controls)
         ]
         view = view_of(controls, self.sight.lens)
-        commands = cast.perform(seen, decisions, inputs, tuple(things), view, replay)
-        command, decision, posed = commands[0], decisions[0], cast.lead.posed
-        assert posed is not None, "it has just performed"
-        interior = self._window.update(state, controls, command, inputs.inside)
-        outcome = replace(decision, command=command, hint=self._hint(decision))
+        lead, *others = cast.perform(seen, decisions, told, tuple(things), view, replay)
+        interior = self._window.update(state, controls, lead.command, inputs.inside)
         self._lap("animation")
         step = Step(
             frame,
             state,
             controls,
-            outcome,
-            posed,
+            replace(lead.outcome, hint=self._hint(lead.outcome)),
+            lead.posed,
             picture=None,
             subjects=picture_regions(
                 [(state, self.cube.edge), *((each.state, each.edge) for each in played)],
@@ -346,8 +344,9 @@ class Playground:
             ),
             scenario=self.scenario.name,
             has_intensity=self.scenario.has_intensity,
-            line=cast.lead.speaking.line if command.speech is not None else None,
-            others=cast.performances(commands, decisions),
+            line=lead.line,
+            name=lead.name,
+            others=tuple(others),
             players=tuple(played),
             interior=interior,
             appearance=appearance,

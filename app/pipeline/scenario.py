@@ -1,7 +1,7 @@
 """The interface of a scenario."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol, runtime_checkable
 
 from cubeling.affect import Emotion, Personality
@@ -9,7 +9,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import check_speed_map, check_turns
 from cubeling.app.pipeline.table.props import Thing
 from cubeling.app.pipeline.table.situation import Situation
-from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import LEAD, Lines, SpokenLine
 from cubeling.characters import CharacterCommand, RootDelta
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel
@@ -26,10 +26,25 @@ class Inputs:
     """Name of the scenario that the player asked for, "" for the present one."""
 
     line: SpokenLine | None = None
-    """What the character begins to say in this frame; None for nothing new."""
+    """What the character begins to say in this frame; None for nothing new. With several, the first
+    one; a scenario is told of its own character's."""
 
     inside: bool = False
     """Whether the player asked to open the cube, with the character in it, or to close it."""
+
+    lines_of_others: Lines = field(default_factory=dict)
+    """What the rest of the cast wants to say from this frame on, by their names."""
+
+    @property
+    def lines(self) -> Lines:
+        """What all of the cast want to say from this frame on."""
+        own = {} if self.line is None else {LEAD: self.line}
+        return {**own, **self.lines_of_others}
+
+    def with_lines(self, lines: Lines) -> "Inputs":
+        """Return the same with what the cast wants to say."""
+        others = {name: line for name, line in lines.items() if name != LEAD}
+        return replace(self, line=lines.get(LEAD), lines_of_others=others)
 
     @property
     def events(self) -> tuple[str, ...]:

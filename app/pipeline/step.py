@@ -1,5 +1,6 @@
 """The result of one frame, and what a replay may provide instead of computing it."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,26 +21,42 @@ Rect = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class Performance:
-    """What a character of the cast does in a frame, besides the first."""
+    """What a character of the cast does in a frame."""
 
     name: str
     """Its name in the cast."""
 
-    command: CharacterCommand
-    """What it is asked to do."""
+    outcome: Outcome
+    """The decision of its scenario."""
 
     posed: PosedCharacter
     """The character as it is to be drawn."""
 
-    emotion: EmotionTarget
-    """The emotion that it shows."""
-
     line: SpokenLine | None = None
     """What it says, also if it has begun before; None for nothing."""
+
+    scenario: str = ""
+    """Name of the scenario that decides for it."""
+
+    @property
+    def command(self) -> CharacterCommand:
+        """What it is asked to do."""
+        return self.outcome.command
+
+    @property
+    def emotion(self) -> EmotionTarget:
+        """The emotion that it shows."""
+        return self.outcome.emotion
 
     def messages(self) -> dict[str, object]:
         """Return its messages by the last part of their topics."""
         return {"command": self.command, "pose": self.posed, "emotion": self.emotion}
+
+
+def speech_start(seen: Performance) -> float:
+    """Return when the line began that a character says [s]; −∞ for silence."""
+    speech = seen.command.speech
+    return -math.inf if speech is None else speech.start
 
 
 @dataclass(frozen=True)
@@ -100,6 +117,9 @@ class Step:
     line: SpokenLine | None = None
     """What the character says, also if it has begun before; None for nothing."""
 
+    name: str = ""
+    """Name of the character in the cast."""
+
     others: tuple[Performance, ...] = ()
     """What the rest of the cast does."""
 
@@ -114,6 +134,12 @@ class Step:
 
     tracker_error: str = ""
     """The error of the tracker that cost this frame, with its place in the code; "" for none."""
+
+    @property
+    def cast(self) -> tuple[Performance, ...]:
+        """What all of the cast do, the first one too."""
+        lead = Performance(self.name, self.outcome, self.posed, self.line, self.scenario)
+        return lead, *self.others
 
     @property
     def command(self) -> CharacterCommand:

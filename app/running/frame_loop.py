@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import ReplayInputs, RobotView, Step
-from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import Lines
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.quality_control import AUTO_QUALITY, QualityControl
 from cubeling.app.running.summary import Summary
@@ -19,14 +19,14 @@ def both_asked(first: Inputs, then: Inputs) -> Inputs:
     """Return what a player asked for before and after, as if it had been at the same time.
 
     >>> both_asked(Inputs(clear=True, inside=True), Inputs(scenario="reach", inside=True))
-    Inputs(clear=True, scenario='reach', line=None, inside=False)
+    Inputs(clear=True, scenario='reach', line=None, inside=False, lines_of_others={})
     """
-    return Inputs(
+    both = Inputs(
         clear=first.clear or then.clear,
         scenario=then.scenario or first.scenario,
-        line=then.line or first.line,
         inside=first.inside != then.inside,
     )
+    return both.with_lines({**first.lines, **then.lines})
 
 
 class FrameLoop:
@@ -36,7 +36,7 @@ class FrameLoop:
         self._session, self._summary = session, summary
         self._inputs = Inputs()
         self._start_over = self._inside = False
-        self._line: SpokenLine | None = None
+        self._lines: Lines = {}
         self._index = 0
         self._replay: ReplayInputs | None = None
         self._hidden: Step | None = None
@@ -57,7 +57,7 @@ class FrameLoop:
         self._read_recorded(frame)
         asked = Inputs(clear=True) if self._take_start_over() else self._inputs
         inside = asked.inside != self._take_inside()
-        inputs = replace(asked, line=self._take_line(), inside=inside)
+        inputs = replace(asked, inside=inside).with_lines(self._take_lines())
         session.change_scenario(inputs.scenario)
         if session.recording is not None:
             frame = session.recording.encode(frame)
@@ -73,9 +73,8 @@ class FrameLoop:
         """Process one frame without drawing and showing it."""
         session = self._session
         self._read_recorded(frame)
-        inputs = Inputs(
-            clear=self._take_start_over(), line=self._take_line(), inside=self._take_inside()
-        )
+        inputs = Inputs(clear=self._take_start_over(), inside=self._take_inside())
+        inputs = inputs.with_lines(self._take_lines())
         self._hidden = session.playground.step(frame, inputs, self._replay, drawn=False)
         if session.pace is None:  # else the robot lives in real time, and misses what is skipped
             self._feel(self._hidden)
@@ -149,18 +148,18 @@ class FrameLoop:
         inside, self._inside = self._inside, False
         return inside
 
-    def _take_line(self) -> SpokenLine | None:
-        line, self._line = self._line, None
-        return line
+    def _take_lines(self) -> Lines:
+        lines, self._lines = self._lines, {}
+        return lines
 
     def _read_recorded(self, frame: Frame) -> None:
         """Read what a replay knows of a frame, and what the character begins to say."""
         session = self._session
         if frame.index < self._index:  # the player went back
-            self._start_over, self._line, self._inside = False, None, False
+            self._start_over, self._lines, self._inside = False, {}, False
         self._index = frame.index
         self._start_over |= frame.timestamp in session.start_overs
         self._inside ^= frame.timestamp in session.openings  # two that were left out are none
-        self._line = session.speaker.line(frame.timestamp) or self._line
+        self._lines = {**self._lines, **session.speaker.lines(frame.timestamp)}
         if session.replay_inputs is not None:
             self._replay = next(session.replay_inputs, None)

@@ -178,7 +178,7 @@ def open_session(
         pace = _pace(options, source, player)
         stepped = pace is None and not source.live
         lines = None if replayed is None else replayed.lines
-        speaker = open_speaker(options, character, lines, waits=stepped)
+        speaker = open_speaker(options, (character, *others), lines, waits=stepped)
         closing.callback(speaker.close)
         robot = closing.enter_context(
             RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)

@@ -83,11 +83,8 @@ def _steps(session: OpenedSession, progress: Progress | None) -> Iterator[Step]:
     """Process every frame, whatever its time."""
     for frame in session.source:
         now = frame.timestamp
-        inputs = Inputs(
-            clear=now in session.start_overs,
-            line=session.speaker.line(now),
-            inside=now in session.openings,
-        )
+        inputs = Inputs(clear=now in session.start_overs, inside=now in session.openings)
+        inputs = inputs.with_lines(session.speaker.lines(now))
         step = session.playground.step(frame, inputs)
         if progress is not None:
             progress(step)

@@ -39,6 +39,16 @@ LINE_TOPIC = "/audio/line"
 """The channel of what the character says: a message with the sound in the frame in which a line
 begins. The inputs of that frame hold the words."""
 
+
+def line_topic(name: str) -> str:
+    """Return the channel of the sound of one of the cast, by its name as `Lines` have it.
+
+    >>> line_topic(""), line_topic("vleo")
+    ('/audio/line', '/cast/vleo/line')
+    """
+    return f"/cast/{name}/line" if name else LINE_TOPIC
+
+
 MAX_MASK_PX = 1 << 24
 """Most pixels of a mask in a message; that of a hand is smaller than the camera's picture."""
 

@@ -3,7 +3,19 @@
 from dataclasses import dataclass
 
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.characters import SpeechIntent
+
+
+@dataclass(frozen=True)
+class RecordedLine:
+    """What a further character of the cast wants to say from a frame on."""
+
+    name: str
+    """Its name in the cast."""
+
+    speech: SpeechIntent
+    """The words, whose sound is on its channel of `line_topic`."""
 
 
 @dataclass(frozen=True)
@@ -22,11 +34,24 @@ class RecordedInputs:
     timestamp: float
     """Time of the frame [s]."""
 
+    others: tuple[RecordedLine, ...] = ()
+    """What the rest of the cast wants to say."""
+
+    @property
+    def speeches(self) -> dict[str, SpeechIntent]:
+        """What all want to say, by their names as `Lines` have them."""
+        own = {} if self.speech is None else {LEAD: self.speech}
+        return {**own, **{each.name: each.speech for each in self.others}}
+
     @classmethod
     def of(cls, inputs: Inputs, timestamp: float) -> "RecordedInputs | None":
         """Return what a recording keeps of the inputs of a frame; None for nothing."""
-        line = inputs.line
-        if not (inputs.clear or inputs.inside or line is not None):
+        if not (inputs.clear or inputs.inside or inputs.lines):
             return None
-        speech = None if line is None else SpeechIntent(line.utterance, timestamp, line.profile)
-        return cls(inputs.clear, inputs.inside, speech, timestamp)
+        speeches = {
+            name: SpeechIntent(line.utterance, timestamp, line.profile)
+            for name, line in inputs.lines.items()
+        }
+        own = speeches.pop(LEAD, None)
+        others = tuple(RecordedLine(*each) for each in speeches.items())
+        return cls(inputs.clear, inputs.inside, own, timestamp, others)

@@ -29,11 +29,11 @@ from cubeling.app.session.encoding import (
     FORMAT_KEY,
     IMAGE_TOPIC,
     INPUTS_TOPIC,
-    LINE_TOPIC,
     SESSION_FORMAT,
     SESSION_RECORD,
     encode,
     encode_sound,
+    line_topic,
     message_type,
     schema,
 )
@@ -147,8 +147,8 @@ class Recorder(Closeable):
         now = step.frame.timestamp
         self._frame(step.frame)
         came_in = None if inputs is None else RecordedInputs.of(inputs, now)
-        if inputs is not None and inputs.line is not None:
-            self._line(inputs.line, now)
+        for name, line in () if inputs is None else inputs.lines.items():
+            self._line(line_topic(name), line, now)
         if came_in is not None:
             self._json(INPUTS_TOPIC, partial(encode, came_in), now)
         for topic, message in step.messages().items():
@@ -260,7 +260,7 @@ class Recorder(Closeable):
         message.timestamp.FromNanoseconds(nanoseconds_of(frame.timestamp))
         self._protobuf(IMAGE_TOPIC, message, frame.timestamp)
 
-    def _line(self, line: SpokenLine, timestamp: float) -> None:
+    def _line(self, topic: str, line: SpokenLine, timestamp: float) -> None:
         message = RawAudio(
             data=encode_sound(line.samples),
             format="pcm-s16",
@@ -268,7 +268,7 @@ class Recorder(Closeable):
             number_of_channels=1,
         )
         message.timestamp.FromNanoseconds(nanoseconds_of(timestamp))
-        self._protobuf(LINE_TOPIC, message, timestamp)
+        self._protobuf(topic, message, timestamp)
 
     def _protobuf(self, topic: str, message: Any, timestamp: float) -> None:
         schema_id = partial(register_schema, self._writer, type(message))

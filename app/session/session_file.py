@@ -17,7 +17,7 @@ from mcap.summary import Summary
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import ReplayInputs
-from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import Lines, SpokenLine
 from cubeling.app.session.encoding import (
     APPEARANCE_TOPIC,
     CHANNEL_TYPES,
@@ -32,6 +32,7 @@ from cubeling.app.session.encoding import (
     SESSION_RECORD,
     decode,
     decode_sound,
+    line_topic,
     message_type,
 )
 from cubeling.app.session.file_records import READ_ERRORS, is_whole, metadata_of
@@ -39,6 +40,7 @@ from cubeling.app.session.file_start import open_session_file
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
 from cubeling.characters import CharacterCommand, SpeechIntent
+from cubeling.characters.speech import Samples
 
 START_OVER_EVENT = "start over"
 """Event of a player who starts over."""
@@ -263,8 +265,8 @@ class SessionFile:
         return frozenset(time for time, each in self.inputs.items() if each.inside)
 
     @cached_property
-    def lines(self) -> dict[float, SpokenLine]:
-        """What the character says, by the frame in which it begins [s].
+    def lines(self) -> dict[float, Lines]:
+        """What the cast says, by the frame in which it is said first [s].
 
         What was said is an input, so a replay needs no voice.
 
@@ -273,21 +275,21 @@ class SessionFile:
         AppError
             A message is not what a recorder writes.
         """
-        said = {time: each.speech for time, each in self.inputs.items() if each.speech}
-        lines: dict[float, SpokenLine] = {}
-        for topic, time, data in self.messages(LINE_TOPIC) if said else ():
-            if (speech := said.get(time)) is not None:
-                from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
-                from google.protobuf.message import DecodeError
-
+        said = {
+            (line_topic(name), time): (name, speech)
+            for time, each in self.inputs.items()
+            for name, speech in each.speeches.items()
+        }
+        lines: dict[float, dict[str, SpokenLine]] = {}
+        topics = dict.fromkeys(topic for topic, _ in said)
+        for topic, time, data in self.messages(*topics) if said else ():
+            if (topic, time) in said:
+                name, speech = said[topic, time]
                 with self._named_message(topic, time):
-                    try:
-                        audio = RawAudio.FromString(data)
-                    except DecodeError as error:
-                        raise ValueError(error) from None
-                    sound = decode_sound(audio.data)
-                lines[time] = SpokenLine(speech.utterance, sound, audio.sample_rate, speech.profile)
-        return lines
+                    rate, sound = _sound_of(data)
+                line = SpokenLine(speech.utterance, sound, rate, speech.profile)
+                lines.setdefault(time, {})[name] = line
+        return dict(lines)
 
     def replay_inputs(self, start: str) -> Iterator[ReplayInputs]:
         """Yield the recorded messages up to the stage `start`, for each frame.
@@ -364,6 +366,18 @@ class SessionFile:
             f"the session '{self.path}' was cut off: {quantity(frames, 'frame')} ({seconds:.1f} s) "
             "can be played with --salvage"
         )
+
+
+def _sound_of(data: bytes) -> tuple[int, Samples]:
+    """Return sample rate [Hz] and sound of a message; raises ValueError for another one."""
+    from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
+    from google.protobuf.message import DecodeError
+
+    try:
+        audio = RawAudio.FromString(data)
+    except DecodeError as error:
+        raise ValueError(error) from None
+    return audio.sample_rate, decode_sound(audio.data)
 
 
 def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:

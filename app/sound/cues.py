@@ -87,7 +87,7 @@ class SoundCues:
         if self._moods is not None:
             cues += self._moods.update(step)
         if step.posed.visible:
-            pan = pan_of(step)
+            pan = pan_of(step.posed, step)
             actions = self._actions.update(step.posed)
             if step.command.speaks:
                 actions = []  # the character has one mouth
@@ -174,11 +174,11 @@ class _MoodCues:
         return [Cue(closest_word(MOOD_SOUNDS, emotion) or "neutral")]
 
 
-def pan_of(step: Step) -> float:
-    """Return where the character is heard, by its direction from the camera."""
+def pan_of(posed: PosedCharacter, step: Step) -> float:
+    """Return where a character of a step is heard, by its direction from the camera."""
     if step.controls.camera_from_table is None:
         return 0.0
-    x, _, z, _ = step.controls.camera_from_table @ step.posed.table_from_character[:, 3]
+    x, _, z, _ = step.controls.camera_from_table @ posed.table_from_character[:, 3]
     return float(np.clip(math.atan2(x, z) / EDGE_RAD, -1.0, 1.0))
 
 

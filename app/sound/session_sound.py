@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.step import Step, speech_start
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.sound.cues import SoundCues, pan_of
 from cubeling.app.sound.loudspeaker import Loudspeaker
@@ -72,16 +72,19 @@ class SessionSound:
         self._speak(step)
 
     def _speak(self, step: Step) -> None:
-        """Let the voice say the line of a step, from where it is; silence if there is none."""
-        line, speech = step.line, step.command.speech
-        if line is self._line:
+        """Let who speaks say its line, from where it is; silence if nobody does.
+
+        One of the cast speaks at a time; the line of another that has ended may still be read.
+        """
+        seen = max(step.cast, key=speech_start)
+        if seen.line is self._line:
             return
-        self._line = line
-        if line is None or speech is None:
+        self._line, speech = seen.line, seen.command.speech
+        if seen.line is None or speech is None:
             self.mixer.say(np.zeros(0))
             return
         late = round((step.frame.timestamp - speech.start) * SAMPLE_RATE)
-        self.mixer.say(SPEECH_GAIN * at_sample_rate(line)[late:], pan_of(step))
+        self.mixer.say(SPEECH_GAIN * at_sample_rate(seen.line)[late:], pan_of(seen.posed, step))
 
     def restart(self) -> None:
         """Forget the steps so far: the next one does not follow them, as after a seek."""

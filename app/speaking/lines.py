@@ -13,6 +13,9 @@ LINES_FILE = toml_kind(
 )
 """A file of what a character says in play, by language and moment."""
 
+WATCHING = "waiting"
+"""The scenario of characters that no cube leads."""
+
 DEFAULT_LANGUAGE = "en"
 """Language of what is said unless the user chooses one."""
 
@@ -46,6 +49,8 @@ def bundled_lines(scenario: str, language: str) -> ScenarioLines | None:
     if scenario.endswith(RULES_SUFFIX):
         return _rule_lines(scenario, language)
     file = _bundled_file(scenario)
+    if scenario == WATCHING and language not in languages_in(file):
+        return None  # nobody chose it: the others are silent in a language of the player's lines
     return read_lines(file, language) if file.is_file() else None
 
 
@@ -60,13 +65,26 @@ def bundled_languages(scenario: str) -> tuple[str, ...]:
     return languages_in(file) if file.is_file() else ()
 
 
-def read_lines(path: Path, language: str) -> ScenarioLines:
-    """Read the lines of a .toml file.
+def read_lines_for(path: Path, scenario: str, language: str) -> ScenarioLines | None:
+    """Read the lines of a player's .toml file for a scenario; None if nothing is said in it.
+
+    What those say that no cube leads is in the tables `[others.LANGUAGE]`; without such tables it
+    is what is bundled.
+    """
+    if scenario != WATCHING:
+        return read_lines(path, language)
+    if "others" not in _content(path):
+        return bundled_lines(scenario, language)
+    return read_lines(path, language, "others")
+
+
+def read_lines(path: Path, language: str, speakers: str = "voice") -> ScenarioLines:
+    """Read the lines of a .toml file, of one of its tables.
 
     Raises AppError if it cannot be read, has no lines in this language, or a line is no text or too
     long.
     """
-    voice = _voice(path)
+    voice = _content(path).table(speakers)
     if language not in voice:
         found = ", ".join(voice) or "none"
         raise voice.wrong(language, f"there are no lines in '{language}'; has {found}")
@@ -76,7 +94,7 @@ def read_lines(path: Path, language: str) -> ScenarioLines:
 
 def languages_in(path: Path) -> tuple[str, ...]:
     """Return the languages of the lines in a .toml file; errors as those of `read_lines`."""
-    return tuple(_voice(path))
+    return tuple(_content(path).table("voice"))
 
 
 def _rule_lines(path: str, language: str) -> ScenarioLines | None:
@@ -97,10 +115,9 @@ def _bundled_file(scenario: str) -> Path:
     return Path(__file__).parents[1] / "scenarios" / "lines" / f"{scenario}.toml"
 
 
-def _voice(path: Path) -> TomlTable:
-    """Return the table `[voice]` of a file, by language."""
-    content = read(path, LINES_FILE)
-    return TomlTable(content, str(path), error=AppError, most=MAX_LINES).table("voice")
+def _content(path: Path) -> TomlTable:
+    """Return the tables of a file, each by language."""
+    return TomlTable(read(path, LINES_FILE), str(path), error=AppError, most=MAX_LINES)
 
 
 def _lines_of(table: TomlTable, moment: str) -> tuple[str, ...]:

@@ -1,9 +1,9 @@
-"""Opening what the character of a session speaks with."""
+"""Opening what the characters of a session speak with."""
 
-from collections.abc import Mapping
-from functools import lru_cache
+from collections.abc import Mapping, Sequence
+from functools import lru_cache, partial
 
-from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import Lines
 from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT
 from cubeling.app.speaking.recorded import RecordedSpeaker, Speaker
@@ -12,8 +12,8 @@ from cubeling.characters import Character
 
 def open_speaker(
     options: SessionOptions,
-    character: Character,
-    recorded: Mapping[float, SpokenLine] | None = None,
+    cast: Sequence[Character],
+    recorded: Mapping[float, Lines] | None = None,
     *,
     waits: bool,
 ) -> Speaker:
@@ -26,10 +26,10 @@ def open_speaker(
     ----------
     options
         What the user asks for.
-    character
+    cast
         Who speaks.
     recorded
-        What it says in the session that is replayed, by the frame in which it begins [s]; None for
+        What they say in the session that is replayed, by the frame in which it begins [s]; None for
         another source.
     waits
         Whether the session is not in real time.
@@ -48,7 +48,7 @@ def open_speaker(
         bundled_languages,
         bundled_lines,
         languages_in,
-        read_lines,
+        read_lines_for,
     )
     from cubeling.app.speaking.speaker import LiveSpeaker
     from cubeling.app.speaking.voices import open_voice
@@ -61,7 +61,7 @@ def open_speaker(
             first = languages[0]  # a file of rules has one language
     else:
         path = options.lines
-        lines_of, languages = lru_cache(lambda _, code: read_lines(path, code)), languages_in(path)
+        lines_of, languages = lru_cache(partial(read_lines_for, path)), languages_in(path)
     lines_of(options.scenario, first)  # refuses a language that it lacks
     try:
         voice = open_voice(options.voice)
@@ -69,7 +69,8 @@ def open_speaker(
         if asked:
             raise
         return RecordedSpeaker({}, str(error))
+    gestures = {id(each.gestures): each.gestures for each in cast if each.gestures is not None}
     choices = tuple(dict.fromkeys((first, *languages, SILENT)))
     return LiveSpeaker(
-        voice, lines_of, choices, options.profile, gestures=character.gestures, waits=waits
+        voice, lines_of, choices, options.profile, gestures=[*gestures.values()], waits=waits
     )

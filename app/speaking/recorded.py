@@ -1,15 +1,15 @@
-"""What a character speaks with, and lines from a recording."""
+"""What the characters speak with, and lines from a recording."""
 
 from collections.abc import Mapping
 from typing import Protocol
 
 from cubeling.app.pipeline.step import Step
-from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import Lines
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
 
 class Speaker(Protocol):
-    """Says what the character says in a session. Whoever opens it closes it."""
+    """Says what the characters say in a session. Whoever opens it closes it."""
 
     problem: str
     """Why it is silent; "" while all is well."""
@@ -26,8 +26,8 @@ class Speaker(Protocol):
     live: bool
     """Whether profile and language change what is said next."""
 
-    def line(self, timestamp: float) -> SpokenLine | None:
-        """Return the line that begins with the frame of a timestamp [s], if one does."""
+    def lines(self, timestamp: float) -> Lines:
+        """Return what the cast wants to say from the frame of a timestamp on [s]."""
         ...
 
     def hear(self, step: Step) -> None:
@@ -45,14 +45,14 @@ class RecordedSpeaker:
     live = False
     languages: tuple[str, ...] = ()
 
-    def __init__(self, lines: Mapping[float, SpokenLine], problem: str = "") -> None:
+    def __init__(self, lines: Mapping[float, Lines], problem: str = "") -> None:
         self.problem, self.language = problem, ""
         self.profile = DEFAULT_PROFILE
         self._lines = lines
 
-    def line(self, timestamp: float) -> SpokenLine | None:
-        """Return the line that begins with the frame of a timestamp [s], if one does."""
-        return self._lines.get(timestamp)
+    def lines(self, timestamp: float) -> Lines:
+        """Return what the cast wants to say from the frame of a timestamp on [s]."""
+        return self._lines.get(timestamp, {})
 
     def hear(self, step: Step) -> None:
         """Do nothing: what is said was recorded."""

@@ -2,15 +2,24 @@
 
 import queue
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
-from cubeling.app.pipeline.step import Step
-from cubeling.app.pipeline.table.spoken_line import SpokenLine
-from cubeling.app.speaking.line_chooser import LineChooser, LineRequest
-from cubeling.app.speaking.lines import SILENT, ScenarioLines
+from cubeling.app.pipeline.step import Performance, Step
+from cubeling.app.pipeline.table.spoken_line import LEAD, Lines, SpokenLine
+from cubeling.app.speaking.cast_voices import combined, voices_of_cast
+from cubeling.app.speaking.line_chooser import (
+    PAUSE_S,
+    WATCHING_PAUSE_S,
+    LineChooser,
+    LineRequest,
+    events_for,
+)
+from cubeling.app.speaking.lines import SILENT, WATCHING, ScenarioLines
 from cubeling.characters import CharacterError
 from cubeling.characters.motion import GestureLibrary
 from cubeling.characters.speech import (
+    Manner,
     SpeechProfile,
     TaggedText,
     Voice,
@@ -44,7 +53,7 @@ class LiveSpeaker:
     profile
         How it is said with the body.
     gestures
-        Those of the character, to be made ready; None for none.
+        Those of the characters, to be made ready.
     waits
         Whether the session is not in real time, so that the next frame waits for its line.
     """
@@ -58,46 +67,73 @@ class LiveSpeaker:
         languages: tuple[str, ...],
         profile: SpeechProfile,
         *,
-        gestures: GestureLibrary | None = None,
+        gestures: Sequence[GestureLibrary] = (),
         waits: bool = False,
     ) -> None:
         self.problem = ""
         self.profile, self.languages, self.language = profile, languages, languages[0]
         self._voice, self._lines_of, self._waits = voice, lines_of, waits
-        self._played = "", ""
-        self._moments: LineChooser | None = None
-        self._requests: queue.Queue[LineRequest | None] = queue.Queue()
-        self._said: queue.Queue[SpokenLine | None] = queue.Queue()
-        self._asked = False
+        self._played: dict[str, tuple[str, str]] = {}
+        self._choosers: dict[str, LineChooser] = {}
+        self._voices: dict[str, Manner] = {}
+        self._last = ""  # the one that has spoken last of those that only watch
+        self._requests: queue.Queue[tuple[str, LineRequest] | None] = queue.Queue()
+        self._said: queue.Queue[tuple[str, SpokenLine | None]] = queue.Queue()
+        self._asked = 0
         self._thread = threading.Thread(
             target=self._run, args=(gestures,), name="voice", daemon=True
         )
         self._thread.start()
 
-    def line(self, timestamp: float) -> SpokenLine | None:
-        """Return the newest line that is ready, if there is one."""
-        newest = None
-        if self._waits and self._asked:
-            try:
-                newest = self._said.get(timeout=ANSWER_S)
-            except queue.Empty:
-                self.problem = "the voice is too slow"
-        self._asked = False
+    def lines(self, timestamp: float) -> Lines:
+        """Return the newest line of each of the cast that is ready."""
+        ready = []
+        try:
+            for _ in range(self._asked if self._waits else 0):
+                ready.append(self._said.get(timeout=ANSWER_S))
+        except queue.Empty:
+            self.problem = "the voice is too slow"
+        self._asked = 0
         while not self._said.empty():
-            newest = self._said.get_nowait() or newest
-        return newest
+            ready.append(self._said.get_nowait())
+        return {name: line for name, line in ready if line is not None}
 
     def hear(self, step: Step) -> None:
         """Let the voice speak what there is to say about a step."""
-        played = step.scenario, self.language
-        if played != self._played:
-            self._played = played
+        wishes = {}
+        for number, (name, seen) in enumerate(members := _named(step)):
+            chooser = self._chooser(name, seen.scenario, number)
+            if chooser is not None:
+                request = chooser.update(step.frame.timestamp, seen, events_for(step, number))
+                if request is not None:
+                    wishes[name] = request
+        if len(members) - 1 != len(self._voices):
+            self._voices = voices_of_cast([name for name, _ in members[1:]])
+        for name in self._chosen(wishes) if not self.problem else ():
+            wish, voice = wishes[name], self._voices.get(name, Manner())
+            self._asked += 1
+            self._requests.put((name, replace(wish, manner=combined(wish.manner, voice))))
+
+    def _chooser(self, name: str, scenario: str, number: int) -> LineChooser | None:
+        """Return what chooses the lines of one of the cast; None for silence."""
+        played = scenario, self.language
+        if self._played.get(name) != played:
+            self._played[name] = played
+            self._choosers.pop(name, None)
             lines = None if self.language == SILENT else self._lines_of(*played)
-            self._moments = None if lines is None else LineChooser(lines)
-        request = None if self._moments is None else self._moments.update(step)
-        if request is not None and not self.problem:
-            self._asked = True
-            self._requests.put(request)
+            if lines is not None:
+                pause = WATCHING_PAUSE_S if scenario == WATCHING else PAUSE_S
+                self._choosers[name] = LineChooser(lines, pause, number)
+        return self._choosers.get(name)
+
+    def _chosen(self, wishes: Mapping[str, LineRequest]) -> list[str]:
+        """Return who is to speak; of those that only watch it is one, and they take turns."""
+        watching = [name for name in wishes if self._played[name][0] == WATCHING]
+        chosen = [name for name in wishes if name not in watching]
+        if watching:
+            self._last = next((name for name in watching if name > self._last), watching[0])
+            chosen.append(self._last)
+        return chosen
 
     def close(self) -> None:
         """End the voice; a second call does nothing."""
@@ -105,24 +141,31 @@ class LiveSpeaker:
         self._thread.join(timeout=1.0)
         self._voice.close()
 
-    def _run(self, gestures: GestureLibrary | None) -> None:
+    def _run(self, gestures: Sequence[GestureLibrary]) -> None:
         failures = 0
         self._prepare(gestures)
-        while (request := self._requests.get()) is not None:
+        while (asked := self._requests.get()) is not None:
+            name, request = asked
             self._prepare(gestures)
             try:
-                self._said.put(line_of(self._voice, request, self.profile))
+                self._said.put((name, line_of(self._voice, request, self.profile)))
                 failures = 0
             except CharacterError as error:
-                self._said.put(None)
+                self._said.put((name, None))
                 failures += 1
                 if failures == MAX_FAILURES:
                     self.problem = str(error)
 
-    def _prepare(self, gestures: GestureLibrary | None) -> None:
+    def _prepare(self, gestures: Sequence[GestureLibrary]) -> None:
         """Make what plans the gestures, which takes longer than a frame, unless it is there."""
-        if gestures is not None:
-            self.profile.planner(gestures)
+        for each in gestures:
+            self.profile.planner(each)
+
+
+def _named(step: Step) -> list[tuple[str, Performance]]:
+    """Return what the cast does in a step, by their names as `Lines` have them."""
+    first, *others = step.cast
+    return [(LEAD, first), *((each.name, each) for each in others)]
 
 
 def line_of(voice: Voice, request: LineRequest, profile: SpeechProfile) -> SpokenLine:

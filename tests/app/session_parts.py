@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from cubeling.app.pipeline.step import ReplayInputs
-from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.spoken_line import LEAD, SpokenLine
 from cubeling.app.running.replay_check import ComparisonResult, check_session
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.inputs import RecordedInputs
@@ -31,7 +31,7 @@ def openings(path: Path) -> frozenset[float]:
 
 def lines(path: Path) -> dict[float, SpokenLine]:
     with SessionFile(path) as session:
-        return session.lines
+        return {time: said[LEAD] for time, said in session.lines.items() if LEAD in said}
 
 
 def has_channels(path: Path) -> bool:

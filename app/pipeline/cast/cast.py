@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from cubeling.app.pipeline.cast.member import CastMember
+from cubeling.app.pipeline.cast.turns import Turns
 from cubeling.app.pipeline.scenario import Inputs, Outcome
 from cubeling.app.pipeline.step import Performance, ReplayInputs
 from cubeling.app.pipeline.table.attention import ALONE, Company
 from cubeling.app.pipeline.table.situation import SeenCube
-from cubeling.characters import CharacterCommand, Obstacle, TableView
+from cubeling.characters import Obstacle, TableView
 
 
 class Cast:
@@ -20,40 +21,57 @@ class Cast:
 
     def __init__(self, members: Sequence[CastMember]) -> None:
         self.members = tuple(members)
+        self._turns = Turns([each.led for each in self.members])
 
     @property
     def lead(self) -> CastMember:
         """The member that the cube leads."""
         return self.members[0]
 
-    def decide(self, seen: Sequence[SeenCube], inputs: Inputs) -> list[Outcome]:
-        """Let each scenario decide; `seen` are the cubes of the players."""
+    def hear(self, inputs: Inputs, now: float) -> list[Inputs]:
+        """Return what each member is told of the inputs at a time [s]: whoever begins, its line."""
+        if inputs.clear:
+            self._turns.clear()
+        others = (inputs.lines_of_others.get(each.name) for each in self.members[1:])
+        turn = self._turns.update(
+            now, (inputs.line, *others), [each.speaking.end for each in self.members]
+        )
+        for number in turn.interrupted:
+            self.members[number].speaking.stop()
+        silent = replace(inputs, line=None, lines_of_others={})
+        told = [silent] * len(self.members)
+        if turn.begins is not None:
+            told[turn.begins] = replace(silent, line=turn.line)
+        return told
+
+    def decide(self, seen: Sequence[SeenCube], told: Sequence[Inputs]) -> list[Outcome]:
+        """Let each scenario decide; `seen` are the cubes of the players, `told` is of `hear`."""
         return [
-            member.decide(seen[member.player], told)
-            for member, told in zip(self.members, self._told(inputs), strict=True)
+            member.decide(seen[member.player], own)
+            for member, own in zip(self.members, told, strict=True)
         ]
 
     def perform(
         self,
         seen: Sequence[SeenCube],
         decisions: Sequence[Outcome],
-        inputs: Inputs,
+        told: Sequence[Inputs],
         things: tuple[Obstacle, ...],
         view: TableView | None,
         recorded: ReplayInputs,
-    ) -> list[CharacterCommand]:
-        """Advance to the time of a frame, and return the commands; see `CastMember.command`.
+    ) -> tuple[Performance, ...]:
+        """Advance to the time of a frame, and return what each does; see `CastMember.command`.
 
         `things` are in the way of all, and so is each of the others. The first takes a recorded
         command or pose, if there is one.
         """
-        commands = []
-        for number, (member, told) in enumerate(zip(self.members, self._told(inputs), strict=True)):
+        performances = []
+        for number, (member, own) in enumerate(zip(self.members, told, strict=True)):
             beside = () if len(self.members) == 1 else self._bodies(number)
             command = member.command(
                 seen[member.player],
                 decisions[number],
-                told,
+                own,
                 (*things, *beside),
                 view,
                 self._company(number),
@@ -63,26 +81,13 @@ class Cast:
                 command = recorded.command or command
                 pose = recorded.pose_for(member.character)
             member.perform(command, pose)
-            commands.append(command)
-        return commands
-
-    def performances(
-        self, commands: Sequence[CharacterCommand], decisions: Sequence[Outcome]
-    ) -> tuple[Performance, ...]:
-        """Return what all but the first do in a frame, after `perform`."""
-        return tuple(
-            member.performance(command, decision)
-            for member, command, decision in zip(self.members, commands, decisions, strict=True)
-        )[1:]
+            performances.append(member.performance(replace(decisions[number], command=command)))
+        return tuple(performances)
 
     def _bodies(self, number: int) -> tuple[Obstacle, ...]:
         """Return the others as they are in the way of one of the members."""
         bodies = (each.obstacle for at, each in enumerate(self.members) if at != number)
         return tuple(each for each in bodies if each is not None)
-
-    def _told(self, inputs: Inputs) -> list[Inputs]:
-        """Return what each member is told of the inputs: the first one says the lines."""
-        return [inputs, *[replace(inputs, line=None)] * (len(self.members) - 1)]
 
     def _company(self, number: int) -> Company:
         """Return the others as one of the members sees them."""
@@ -93,5 +98,10 @@ class Cast:
         ]
         if not others:
             return ALONE
-        speaking = [each.face for each in others if each.speaking.line is not None]
-        return Company(tuple(each.face for each in others), speaking[0] if speaking else None)
+        speaking = [each for each in others if each.speaking.line is not None]
+        last = max(speaking, key=lambda each: each.speaking.end, default=None)
+        return Company(
+            tuple(each.face for each in others),
+            None if last is None else last.face,
+            waits=self._turns.waits(number),
+        )

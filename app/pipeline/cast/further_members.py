@@ -65,6 +65,15 @@ def further_members(
         scenario = led[number] if player else waiting(place, number + 1)
         attention = Attention(look, edges[player], seed)
         members.append(
-            CastMember(name, character, scenario, attention, player=player, place=place, seed=seed)
+            CastMember(
+                name,
+                character,
+                scenario,
+                attention,
+                player=player,
+                led=player > 0,
+                place=place,
+                seed=seed,
+            )
         )
     return members

@@ -49,6 +49,8 @@ class CastMember:
         Chooses what it looks at.
     player
         The number of the player whose cube leads it, or whom it watches.
+    led
+        Whether that cube leads it.
     place
         Where it stands at first; None for the scenario's own place.
     seed
@@ -72,11 +74,14 @@ class CastMember:
         attention: Attention,
         *,
         player: int = 0,
+        led: bool = True,
         place: RootDelta | None = None,
         seed: int = 0,
         controller: ControllerFactory = first_suitable,
     ) -> None:
         self.name, self.scenario, self.attention = name, scenario, attention
+        self.led = led
+        """Whether a cube leads it."""
         self.player = player
         """The number of the player whose cube leads it, or whom it watches."""
         place = place or scenario.start
@@ -145,11 +150,11 @@ class CastMember:
         self.complexion.update(command.timestamp, command.emotion)
         return self.body
 
-    def performance(self, command: CharacterCommand, decision: Outcome) -> Performance:
+    def performance(self, outcome: Outcome) -> Performance:
         """Return what it does in a frame, after `perform`."""
-        assert self.posed is not None
-        line = self.speaking.line if command.speech is not None else None
-        return Performance(self.name, command, self.posed, decision.emotion, line)
+        assert self.posed is not None, "it has just performed"
+        line = self.speaking.line if outcome.command.speech is not None else None
+        return Performance(self.name, outcome, self.posed, line, self.scenario.name)
 
     def body_of(self, posed: PosedCharacter) -> PosedBody:
         """Return its body in a pose."""

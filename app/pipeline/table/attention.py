@@ -41,6 +41,9 @@ class Company:
     speaker: Array | None = None
     """The face of one that speaks; None for silence."""
 
+    waits: bool = False
+    """Whether it waits for the end of what that one says, to say something itself."""
+
 
 ALONE = Company()
 """Nobody else is on the table."""
@@ -101,7 +104,7 @@ class Attention:
     def _choose(self, controls: CubeControls, command: CharacterCommand, company: Company) -> str:
         """Return what to look at with "auto"."""
         now = controls.timestamp
-        if company.speaker is not None and command.activity != "move":
+        if company.speaker is not None and (company.waits or command.activity != "move"):
             return "speaker"
         if controls.lifted and command.activity != "move":
             return "hand"

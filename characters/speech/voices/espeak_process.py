@@ -12,6 +12,7 @@ SYNCHRONOUS, PHONE_EVENTS, IPA, DO_NOT_EXIT = 2, 1, 2, 0x8000
 UTF8 = 1
 RATE, PITCH, RANGE = 1, 3, 4  # parameters, by the numbers of speak_lib.h
 WORD, PHONE = 1, 7  # types of events
+SPEAKERS = ("", "f2", "m3", "f4", "m7", "f5", "m1")  # variants of a voice
 USUAL_WORDS_PER_MINUTE, USUAL_PERCENT = 165, 50
 
 
@@ -57,7 +58,9 @@ class Engine:
     def say(self, request: dict[str, Any]) -> None:
         """Speak the text of a request; samples and events go to the standard output."""
         language = str(request["language"])
-        if self._library.espeak_SetVoiceByName(language.encode()) != 0:
+        speaker = SPEAKERS[int(request.get("speaker", 0)) % len(SPEAKERS)]
+        voice = f"{language}+{speaker}" if speaker else language
+        if self._library.espeak_SetVoiceByName(voice.encode()) != 0:
             write({"error": f"no voice speaks '{language}'; see: espeak-ng --voices"})
             return
         for parameter, usual, factor in (

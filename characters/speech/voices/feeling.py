@@ -15,7 +15,7 @@ def manner_of(emotion: Emotion | None) -> Manner:
     """Return how a text is spoken in an emotion.
 
     >>> manner_of(None)
-    Manner(rate=1.0, pitch=1.0, range=1.0)
+    Manner(rate=1.0, pitch=1.0, range=1.0, speaker=0)
     >>> sad = manner_of(Emotion(-0.8, -0.4, "sad"))
     >>> sad.rate < 1.0 and sad.pitch < 1.0 and sad.range < 1.0
     True

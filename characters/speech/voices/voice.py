@@ -11,6 +11,7 @@ The process reads one JSON object a line from its standard input and writes to i
               {"end": 26081}                                     the number of samples
               {"error": "no voice speaks 'xx'"}                  instead of "end"
 
+A request may have a "speaker", a number from 1: one beside the usual speaker, if there are more.
 Events come in any order before "end". A program that does so is a voice, whatever engine it uses;
 a licence of the engine ends at the process's border.
 """
@@ -67,6 +68,10 @@ class Manner:
     range: float = 1.0
     """Factor of the pitch range: 0 is monotonous."""
 
+    speaker: int = 0
+    """Who speaks, of the speakers that a program has: 0 is its usual one, each other number another
+    one, as far as it has so many."""
+
 
 class Voice:
     """Speaks with a program; it starts with the first text and goes on until `close`.
@@ -100,13 +105,15 @@ class Voice:
             raise VoiceError("there is no text to say")
         if len(text) > MAX_TEXT:
             raise VoiceError(f"the text has {len(text)} characters: up to {MAX_TEXT} can be said")
-        request = {
+        request: dict[str, Any] = {
             "text": text,
             "language": language,
             "rate": manner.rate,
             "pitch": manner.pitch,
             "range": manner.range,
         }
+        if manner.speaker:
+            request["speaker"] = manner.speaker
         try:
             speech = self._ask(request).speech(text, language)
         except VoiceError:

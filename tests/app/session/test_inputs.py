@@ -8,6 +8,7 @@ import tests.sessions
 from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import (
@@ -48,7 +49,7 @@ def full(tmp_path_factory, short_session):
     )
     with open_session(options, screen=Presses()) as session:
         times = [time for _, time, _ in messages(short_session, "/camera/image")]
-        session.speaker = RecordedSpeaker({times[HIDDEN]: line, times[SHOWN]: line})
+        session.speaker = RecordedSpeaker({times[at]: {LEAD: line} for at in (HIDDEN, SHOWN)})
 
         def mark(step):
             if step.frame.index == MARK and session.recording is not None:

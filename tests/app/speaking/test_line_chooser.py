@@ -8,7 +8,7 @@ import pytest
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
 from cubeling.app.pipeline.step import Step
-from cubeling.app.speaking.line_chooser import AGAIN_S, LineChooser
+from cubeling.app.speaking.line_chooser import AGAIN_S, LineChooser, events_for
 from cubeling.app.speaking.lines import ScenarioLines
 from cubeling.characters import ActionIntent, CharacterCommand, Pose, PosedCharacter
 from cubeling.characters.control.command import SpeechIntent
@@ -34,13 +34,17 @@ def play(hand):
                     action=ActionIntent(icon, changes.get("weight", 0.0)),
                     speech=changes.get("speech"),
                 )
-                request = moments.update(step(controls, made, icon, events))
+                request = chosen(moments, step(controls, made, icon, events))
                 time = controls.timestamp
                 if request is not None:
                     said.append((round(time, 2), request))
         return said
 
     return steps
+
+
+def chosen(chooser, seen):
+    return chooser.update(seen.frame.timestamp, seen.cast[0], events_for(seen, 0))
 
 
 def step(controls, made: CharacterCommand, icon, events=()):

@@ -7,7 +7,7 @@ import pytest
 from cubeling import app
 from cubeling.app.errors import AppError
 from cubeling.app.scenarios import SCENARIOS
-from cubeling.app.speaking.lines import bundled_lines, languages_in, read_lines
+from cubeling.app.speaking.lines import WATCHING, bundled_lines, languages_in, read_lines
 from cubeling.characters.speech.tagged_text import TaggedText
 
 LINES = Path(app.__file__).parent / "scenarios" / "lines"
@@ -62,4 +62,4 @@ def test_a_single_line_need_not_be_a_list(tmp_path):
 def test_bundled_lines_are_in_the_package():
     for file in LINES.iterdir():
         languages_in(file)
-        assert file.stem in SCENARIOS
+        assert file.stem in {*SCENARIOS, WATCHING}

@@ -84,10 +84,12 @@ def test_without_a_voice_a_character_is_silent_unless_it_was_asked_to_speak(tmp_
 
     monkeypatch.setattr(voices, "espeak", gone)
     windowed = SessionOptions(scenario="companion", source="camera:0")
-    speaker = opening.open_speaker(windowed, Character.load("vleo"), waits=False)
-    assert speaker.line(0.0) is None
+    speaker = opening.open_speaker(windowed, [Character.load("vleo")], waits=False)
+    assert speaker.lines(0.0) == {}
     with pytest.raises(CharacterError, match="apt-get install"):
-        opening.open_speaker(replace(windowed, language="en"), Character.load("vleo"), waits=False)
+        opening.open_speaker(
+            replace(windowed, language="en"), [Character.load("vleo")], waits=False
+        )
 
 
 def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(

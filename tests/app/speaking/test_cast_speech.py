@@ -1,0 +1,97 @@
+"""What the further characters of a cast say: their voices, their turns, and their recording."""
+
+import sys
+from collections import Counter
+
+import pytest
+
+from cubeling.app.pipeline.table.spoken_line import LEAD
+from cubeling.app.running.opening import open_session
+from cubeling.app.running.runner import run
+from cubeling.app.session import SessionFile, SessionOptions, messages, session_info
+from cubeling.app.session.encoding import decode
+from cubeling.app.speaking import voices
+from cubeling.app.speaking.cast_voices import OWN_VOICES, voices_of_cast
+from cubeling.app.speaking.lines import WATCHING, bundled_lines, read_lines_for
+from cubeling.characters import CharacterCommand
+from cubeling.characters.speech import Manner
+from cubeling.characters.speech.voices import Voice, VoiceError
+from tests.app import session_parts
+from tests.app.speaking.test_speaker import BUZZ
+
+OTHERS = ("human", "vleo")
+
+
+@pytest.fixture(scope="module")
+def spoken(tmp_path_factory, short_session):
+    """A session of three that all have lines, with a voice that buzzes."""
+    folder = tmp_path_factory.mktemp("cast")
+    lines = folder / "lines.toml"
+    lines.write_text("[voice.en]\nidle = 'I'\n[others.en]\nidle = ['You', 'We']\n")
+    path = folder / "cast.mcap"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(voices, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
+        options = SessionOptions(
+            scenario="companion", source=str(short_session), robot="none", pictures=False,
+            language="en", lines=lines, others=OTHERS, record=path,
+        )  # fmt: skip
+        with open_session(options) as session:
+            run(session)
+    return path
+
+
+def speeches_in(path, name):
+    topic = f"/cast/{name}/command" if name else "/character/command"
+    return [decode(CharacterCommand, data) for _, _, data in messages(path, topic)]
+
+
+def test_each_says_its_own_line_on_a_channel_of_its_own(spoken):
+    with SessionFile(spoken) as session:
+        said = session.lines
+    words = {name: line.utterance.text for each in said.values() for name, line in each.items()}
+    assert words[LEAD] == "I"
+    assert set(words) > {LEAD}
+    for name in set(words) - {LEAD}:
+        assert words[name] in ("You", "We")
+        (sound,) = messages(spoken, f"/cast/{name}/line")
+        assert len(sound[2]) > 800 * 2 * len(words[name])
+
+
+def test_one_speaks_at_a_time_and_its_lips_move(spoken):
+    speaking = Counter()
+    for name in (LEAD, "human", "vleo_2"):
+        for command in speeches_in(spoken, name):
+            speaking[command.timestamp] += command.speaks
+    assert max(speaking.values()) == 1
+
+
+@pytest.mark.slow(reason="a session is processed again")
+def test_a_session_in_which_several_speak_replays_byte_for_byte_without_a_voice(
+    spoken, monkeypatch
+):
+    def gone():
+        raise VoiceError("no voice")
+
+    monkeypatch.setattr(voices, "espeak", gone)
+    result = session_parts.check(spoken, session_info(spoken).options)
+    assert result.identical
+    assert result.counts["/cast/vleo_2/command"] > 10
+
+
+def test_no_two_voices_are_the_same_and_a_name_keeps_its_own():
+    names = ["vleo", "human_2", "vleo_2", "robot"]
+    chosen = voices_of_cast(names)
+    assert len({(each.speaker, each.pitch, each.rate) for each in chosen.values()}) == len(names)
+    assert Manner() not in chosen.values(), "the lead has the usual one"
+    assert voices_of_cast(["vleo"])["vleo"] == chosen["vleo"]
+    assert len(OWN_VOICES) >= 4
+
+
+def test_those_who_watch_say_what_is_bundled_unless_a_file_has_their_lines(tmp_path):
+    path = tmp_path / "lines.toml"
+    path.write_text("[voice.en]\nidle = 'I'\n")
+    assert read_lines_for(path, WATCHING, "en") == bundled_lines(WATCHING, "en")
+    assert bundled_lines(WATCHING, "xx") is None
+    path.write_text("[voice.en]\nidle = 'I'\n[others.en]\nidle = 'You'\n")
+    assert read_lines_for(path, WATCHING, "en").lines == {"idle": ("You",)}
+    assert read_lines_for(path, "companion", "en").lines == {"idle": ("I",)}
