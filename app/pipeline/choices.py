@@ -3,7 +3,8 @@
 `AppearanceMeter` measures what the realism needs, and `CubeWindow` shows the character inside.
 """
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 
 from cubeling.app.errors import AppError
 
@@ -62,6 +63,22 @@ def cast_of(text: str | None, character: str | None) -> tuple[str | None, tuple[
             f"--cast takes one to {MAX_CAST} characters, separated by commas, not '{text:.60}'"
         )
     return names[0], names[1:]
+
+
+def distinct_names(names: Iterable[str]) -> tuple[str, ...]:
+    """Return names of a cast, or of players, with a number where two are the same.
+
+    A name is a part of a channel's, so it has only letters, digits, "-" and "_".
+
+    >>> distinct_names(["vleo", "my cube", "vleo"])
+    ('vleo', 'my-cube', 'vleo_2')
+    """
+    found: list[str] = []
+    for name in names:
+        plain = re.sub(r"[^\w-]+", "-", name) or "unnamed"
+        same = sum(1 for each in found if plain in (each, each.rpartition("_")[0]))
+        found.append(f"{plain}_{same + 1}" if same else plain)
+    return tuple(found)
 
 
 MAX_PLAYERS = 2

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.cast.cast import Cast
-from cubeling.app.pipeline.cast.further_members import distinct_names, further_members
+from cubeling.app.pipeline.cast.further_members import further_members
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.checkpoint import Checkpoint
-from cubeling.app.pipeline.choices import REALISM_CHOICES
+from cubeling.app.pipeline.choices import REALISM_CHOICES, distinct_names
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.picture_regions import picture_regions
@@ -159,7 +159,7 @@ class Playground:
         name, *names = distinct_names(each.name for each in (character, *self._others))
         attention, edges = Attention(look, cube.edge), [each.edge for each in cubes]
         lead = CastMember(name, character, scenario, attention, controller=self._controller)
-        self.cast = Cast([lead, *further_members(names, self._others, led, look, edges)])
+        self.cast = Cast([lead, *further_members(names, self._others, scenario, led, look, edges)])
         """Who is on the table: first the character that the first cube leads."""
         self.players = tuple(
             CubePlayer(name, each, self.intrinsics, self.known_cubes)

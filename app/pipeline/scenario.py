@@ -169,6 +169,19 @@ class CastScenario(Protocol):
     """The rest of its cast, unless the player chooses one: bundled characters or files."""
 
 
+@runtime_checkable
+class CastDirector(Protocol):
+    """A scenario that decides for others of the cast, too."""
+
+    def scenario_of(self, number: int, place: RootDelta) -> Scenario | None:
+        """Return what one of the others plays, by its number from 1; None to let it watch.
+
+        `place` is where it stands at first. What is said of its `Outcome.events` is in the lines of
+        its scenario's name.
+        """
+        ...
+
+
 def check_actions(scenario: Scenario, character: str, known: Collection[str]) -> None:
     """Refuse a character that lacks an action which the scenario will ask for.
 

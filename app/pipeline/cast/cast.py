@@ -1,5 +1,6 @@
 """A cast: the characters on the table, frame by frame."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -22,6 +23,8 @@ class Cast:
     def __init__(self, members: Sequence[CastMember]) -> None:
         self.members = tuple(members)
         self._turns = Turns([each.led for each in self.members])
+        self._heard: int | None = None
+        self._now = -math.inf
 
     @property
     def lead(self) -> CastMember:
@@ -33,9 +36,10 @@ class Cast:
         if inputs.clear:
             self._turns.clear()
         others = (inputs.lines_of_others.get(each.name) for each in self.members[1:])
-        turn = self._turns.update(
-            now, (inputs.line, *others), [each.speaking.end for each in self.members]
-        )
+        ends = [each.speaking.end for each in self.members]
+        over = (at for at, end in enumerate(ends) if self._now < end <= now)
+        self._heard, self._now = next(over, None), now
+        turn = self._turns.update(now, (inputs.line, *others), ends)
         for number in turn.interrupted:
             self.members[number].speaking.stop()
         silent = replace(inputs, line=None, lines_of_others={})
@@ -47,7 +51,7 @@ class Cast:
     def decide(self, seen: Sequence[SeenCube], told: Sequence[Inputs]) -> list[Outcome]:
         """Let each scenario decide; `seen` are the cubes of the players, `told` is of `hear`."""
         return [
-            member.decide(seen[member.player], own)
+            member.decide(seen[member.player], own, self._heard)
             for member, own in zip(self.members, told, strict=True)
         ]
 

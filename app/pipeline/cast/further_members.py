@@ -1,13 +1,12 @@
 """The members of a cast after the first: their names, places and seeds."""
 
 import math
-import re
 import zlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.registry import WAITING
-from cubeling.app.pipeline.scenario import Scenario
+from cubeling.app.pipeline.scenario import CastDirector, Scenario
 from cubeling.app.pipeline.table.attention import Attention
 from cubeling.characters import Character, RootDelta
 
@@ -19,25 +18,10 @@ PLAYER_Z_M = 0.6
 """How far away the point is that they face at first, towards the player [m]."""
 
 
-def distinct_names(names: Iterable[str]) -> tuple[str, ...]:
-    """Return names of a cast, or of players, with a number where two are the same.
-
-    A name is a part of a channel's, so it has only letters, digits, "-" and "_".
-
-    >>> distinct_names(["vleo", "my cube", "vleo"])
-    ('vleo', 'my-cube', 'vleo_2')
-    """
-    found: list[str] = []
-    for name in names:
-        plain = re.sub(r"[^\w-]+", "-", name) or "unnamed"
-        same = sum(1 for each in found if plain in (each, each.rpartition("_")[0]))
-        found.append(f"{plain}_{same + 1}" if same else plain)
-    return tuple(found)
-
-
 def further_members(
     names: Sequence[str],
     characters: Sequence[Character],
+    lead: Scenario,
     led: Sequence[Scenario],
     look: str,
     edges: Sequence[float],
@@ -48,6 +32,8 @@ def further_members(
     ----------
     names, characters
         Theirs, at most four.
+    lead
+        What the first player plays; it may decide for others too, see `CastDirector`.
     led
         What the further players play, each with one of the characters; the rest watches the first.
     look
@@ -62,7 +48,8 @@ def further_members(
         x, z = FURTHER_PLACES_M[number]
         place = RootDelta(x, z, math.atan2(-x, PLAYER_Z_M - z))
         player = number + 1 if number < len(led) else 0
-        scenario = led[number] if player else waiting(place, number + 1)
+        directed = lead.scenario_of(number + 1, place) if isinstance(lead, CastDirector) else None
+        scenario = directed or (led[number] if player else waiting(place, number + 1))
         attention = Attention(look, edges[player], seed)
         members.append(
             CastMember(

@@ -109,12 +109,12 @@ class CastMember:
         self._take(character, animator)
         self.body = None
 
-    def decide(self, seen: SeenCube, inputs: Inputs) -> Outcome:
-        """Let its scenario decide."""
+    def decide(self, seen: SeenCube, inputs: Inputs, heard: int | None = None) -> Outcome:
+        """Let its scenario decide; `heard` is that of `Situation`."""
         animator, controls = self._animator, seen.controls
         cube = table_from_cube(seen.state, controls)
         situation = Situation(
-            self.posed, self.body, animator.actions, animator.walks, animator.length, cube
+            self.posed, self.body, animator.actions, animator.walks, animator.length, cube, heard
         )
         scenario = type(self.scenario)
         with scenario_errors(scenario):

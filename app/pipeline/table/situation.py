@@ -32,6 +32,9 @@ class Situation:
     cube: NDArray[np.float64] | None = None
     """`table_from_cube`, (4, 4) [m]; None where the cube is not seen."""
 
+    heard: int | None = None
+    """Number in the cast of who has ended a line since the previous frame; None for nobody."""
+
 
 @dataclass(frozen=True)
 class SeenCube:

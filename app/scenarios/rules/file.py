@@ -1,10 +1,11 @@
 """The file of a scenario of rules; reading it loads nothing that plays."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.choices import MAX_CAST
+from cubeling.app.pipeline.choices import MAX_CAST, distinct_names
 from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, MOMENTARY_CONDITIONS, Term
 from cubeling.toml_file import TomlTable, read, toml_kind
 
@@ -20,7 +21,7 @@ USUAL_ACTING_S = 3.0
 LONGEST_S = 600.0
 """Longest time that a rule may name [s]."""
 
-RULE_KEYS = ("when", "while", "after", "for", "say", *ACTIONS)
+RULE_KEYS = ("who", "when", "while", "after", "for", "say", *ACTIONS)
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,9 @@ class Rule:
 
     say: tuple[str, ...] = ()
     """What it says, one line at a time, in turn."""
+
+    who: int = 0
+    """The number in the cast of who does it: 0 for `character`, 1 for the first of `others`."""
 
 
 @dataclass(frozen=True)
@@ -85,12 +89,15 @@ class RuleSet:
             dict.fromkeys(each.argument for each in terms if each.argument not in FACE_NAMES)
         )
 
-    @property
-    def asked(self) -> dict[str, str]:
-        """The actions of the character that the rules ask for, with the place of the first."""
+    def of(self, who: int) -> tuple[int, ...]:
+        """Return the places of the rules for one of the cast."""
+        return tuple(index for index, rule in enumerate(self.rules) if rule.who == who)
+
+    def asked(self, who: int) -> dict[str, str]:
+        """Return the actions that the rules ask of one of the cast, with the place of the first."""
         found: dict[str, str] = {}
-        for index, rule in enumerate(self.rules):
-            for key, text in rule.actions:
+        for index in self.of(who):
+            for key, text in self.rules[index].actions:
                 if key == "do" and text not in ("idle", "move"):
                     found.setdefault(text, f"{self.name}: rule[{index}].do")
         return found
@@ -116,15 +123,17 @@ def read_rules(path: str | Path) -> RuleSet:
     """
     file = TomlTable(read(Path(path), RULES_FILE), str(path), error=AppError)
     file.only("summary", "character", "others", "cube", "personality", "language", "hint", "rule")
-    rules = tuple(_rule(row) for row in file.rows("rule", *RULE_KEYS))
+    folder = Path(path).parent
+    character, others = file.line("character", "human"), _others(file)
+    cast = distinct_names(Path(each).stem for each in (character, *others))
+    rules = tuple(_rule(row, cast) for row in file.rows("rule", *RULE_KEYS))
     if not rules:
         raise file.wrong("rule", "there is none; begin one with a line [[rule]]")
-    folder = Path(path).parent
     return RuleSet(
         name=str(path),
         summary=file.line("summary", "a scenario of rules").removesuffix("."),
-        character=_beside(folder, file.line("character", "human")),
-        others=_others(file, folder),
+        character=_beside(folder, character),
+        others=tuple(_beside(folder, each) for each in others),
         cube=_beside(folder, file.line("cube", "companion")),
         personality=_beside(folder, file.line("personality", "lively")),
         language=file.line("language", "en"),
@@ -133,11 +142,11 @@ def read_rules(path: str | Path) -> RuleSet:
     )
 
 
-def _others(file: TomlTable, folder: Path) -> tuple[str, ...]:
+def _others(file: TomlTable) -> tuple[str, ...]:
     names = file.texts("others")
     if len(names) >= MAX_CAST:
         raise file.wrong("others", f"there are {len(names)}, and at most {MAX_CAST - 1} fit")
-    return tuple(_beside(folder, name) for name in names)
+    return names
 
 
 def _beside(folder: Path, name: str) -> str:
@@ -145,14 +154,14 @@ def _beside(folder: Path, name: str) -> str:
     return str(folder / name) if Path(name).suffix else name
 
 
-def _rule(row: TomlTable) -> Rule:
+def _rule(row: TomlTable, cast: Sequence[str]) -> Rule:
     if ("when" in row) == ("while" in row):
         raise row.wrong("when", f"a rule has either when or while; conditions: {_known()}")
     key = "when" if "when" in row else "while"
     if key == "while" and "for" in row:
         raise row.wrong("for", "a rule with while acts as long as its conditions hold")
     try:
-        terms = tuple(map(Term.parse, _texts(row, key)))
+        terms = tuple(Term.parse(text, cast) for text in _texts(row, key))
     except AppError as error:
         raise row.wrong(key, str(error)) from None
     after = row.number("after", 0.0, LONGEST_S, 0.0)
@@ -174,6 +183,7 @@ def _rule(row: TomlTable) -> Rule:
         row.number("for", 0.0, LONGEST_S, USUAL_ACTING_S),
         actions,
         say,
+        cast.index(row.choice("who", cast)) if "who" in row else 0,
     )
 
 

@@ -1,18 +1,18 @@
 """A scenario that a file of rules describes."""
 
-from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
 
 from cubeling.affect import Personality
-from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from cubeling.app.pipeline.scenario import Inputs, Outcome, Scenario, ScenarioSettings
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios.follow import PLAYER_POSITION
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.rules.file import Rule, RuleSet, event_of, read_rules
 from cubeling.app.scenarios.rules.vocabulary import ACTIONS, PACES, Intent, Moment
+from cubeling.app.scenarios.waiting import Waiting
 from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent, RootDelta
 from cubeling.tracking import CubeControls, CubeModel
 
@@ -29,13 +29,24 @@ class RulesScenario:
     A rule with `when` begins to act when its conditions begin to hold, for its time; another one
     that begins meanwhile takes over, of several in one frame the first in the file. While none of
     them acts, the first rule with `while` whose conditions hold does.
+
+    Each of the others for whom there are rules has such a scenario of its own, and watches while
+    none of them acts.
+
+    Parameters
+    ----------
+    cube
+        The cube that leads or is watched.
+    settings
+        The player's.
+    who
+        The number in the cast of the character for which it decides.
+    start
+        Where that one stands at first.
     """
 
     rules: ClassVar[RuleSet]
     """What the file says."""
-
-    asked: ClassVar[Mapping[str, str]]
-    """See `AskingScenario`."""
 
     name: str
     summary: str
@@ -44,15 +55,30 @@ class RulesScenario:
     character: str
     others: tuple[str, ...]
     personality: str
-    start = HOME
     has_intensity = False
     adjustable = ("personality",)
 
-    def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
+    def __init__(
+        self,
+        cube: CubeModel,
+        settings: ScenarioSettings,
+        who: int = 0,
+        start: RootDelta = HOME,
+    ) -> None:
+        self.start, self.asked = start, self.rules.asked(who)
+        self._cube, self._settings = cube, settings
+        self._own = self.rules.of(who)
+        self._waiting = Waiting(start, who) if who else None
         self._roles = {face.name: face.role for face in cube.faces}
         self._mood = MoodController(settings.personality or Personality.load(self.personality))
         self._presence = Presence()
         self._begin()
+
+    def scenario_of(self, number: int, place: RootDelta) -> Scenario | None:
+        """Return what one of the others plays; see `CastDirector`."""
+        if not self.rules.of(number):
+            return None
+        return type(self)(self._cube, self._settings, number, place)
 
     def adjust(self, settings: ScenarioSettings) -> None:
         """Play on with another personality."""
@@ -84,21 +110,27 @@ class RulesScenario:
         if self._acting is not None and (begun or self._acting != before):
             events = (event_of(self._acting),)
         felt = (*(intent.events if events else ()), *inputs.events)
-        emotion = self._mood.update(controls, intent.action if visible else "idle", events=felt)
-        command = CharacterCommand(
-            timestamp=controls.timestamp,
-            locomotion=_way(intent, moment),
+        command, icon = self._command(intent, moment, visible=visible), intent.action
+        if self._waiting is not None:
+            waits = self._waiting.update(controls, situation, inputs)
+            command, icon = (waits.command, waits.icon) if self._acting is None else (command, icon)
+        emotion = self._mood.update(controls, icon if visible else "idle", events=felt)
+        hint = intent.hint if controls.visible else "Show me the cube"
+        return Outcome(command, emotion, hint, icon, events=events)
+
+    def _command(self, intent: Intent, moment: Moment, *, visible: bool) -> CharacterCommand:
+        return CharacterCommand(
+            timestamp=moment.controls.timestamp,
+            locomotion=_way(intent, moment, self.start),
             action=ActionIntent(intent.action, 1.0) if not intent.go else None,
             visible=visible,
         )
-        hint = intent.hint if controls.visible else "Show me the cube"
-        return Outcome(command, emotion, hint, intent.action, events=events)
 
     def _choose(self, moment: Moment) -> bool:
         """Choose the rule that acts; return whether one with `when` has just begun."""
         now = moment.controls.timestamp
         rules = self.rules.rules
-        due = [index for index, rule in enumerate(rules) if self._is_due(index, rule, moment)]
+        due = [index for index in self._own if self._is_due(index, rules[index], moment)]
         begun = [each for each in due if not rules[each].lasting and each not in self._done]
         self._done.update(begun)
         if begun:
@@ -119,12 +151,12 @@ class RulesScenario:
         return now - self._since.setdefault(index, now) >= rule.after
 
 
-def _way(intent: Intent, moment: Moment) -> LocomotionIntent:
+def _way(intent: Intent, moment: Moment, home: RootDelta) -> LocomotionIntent:
     """Return where an intent lets the character go, and that it faces the player when it stands."""
     cube, character = moment.controls.position, moment.situation.character
     if intent.go == "home":
         return LocomotionIntent(
-            PACES[intent.pace], np.array([HOME.x, HOME.z]), facing=PLAYER_POSITION
+            PACES[intent.pace], np.array([home.x, home.z]), facing=PLAYER_POSITION
         )
     if intent.go == "cube" and cube is not None and character is not None:
         offset = character.table_from_character[[0, 2], 3] - cube
@@ -141,7 +173,6 @@ def rules_scenario(path: str) -> type[RulesScenario]:
         "__module__": __name__,
         "__doc__": rules.summary,
         "rules": rules,
-        "asked": rules.asked,
         "name": rules.name,
         "summary": rules.summary,
         "cube": rules.cube,

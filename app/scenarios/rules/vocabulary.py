@@ -7,7 +7,7 @@ of rules, so that dialogues can be written in the same words.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -146,11 +146,16 @@ CONDITIONS: dict[str, RuleCondition] = {
         "CM",
         "30",
     ),
+    "heard": RuleCondition(
+        "the character of this name in the cast has ended what it said",
+        lambda now, number: now.situation.heard == int(number),
+        "WHO",
+    ),
     "cleared": RuleCondition("the player presses C", lambda now, _: now.inputs.clear),
 }
 """The conditions by name; a new one is a line here."""
 
-MOMENTARY_CONDITIONS = ("placed", "shaken", "gesture", "cleared")
+MOMENTARY_CONDITIONS = ("placed", "shaken", "gesture", "heard", "cleared")
 """Conditions that hold in a single frame."""
 
 NUMBER_ARGUMENTS = ("TURNS", "CM")
@@ -186,17 +191,21 @@ class Term:
     """One of `CONDITIONS`."""
 
     argument: str = ""
-    """Its argument; "" for none."""
+    """Its argument; "" for none. Somebody of the cast is named by the number in it."""
 
     negated: bool = False
     """Whether it must not hold."""
 
     @classmethod
-    def parse(cls, text: str) -> Term:
+    def parse(cls, text: str, cast: Sequence[str] = ()) -> Term:
         """Read a term such as "lifted", "not resting", "top kiss" or "near 10".
+
+        `cast` are the names of all characters.
 
         >>> Term.parse("not near 10")
         Term(name='near', argument='10', negated=True)
+        >>> Term.parse("heard vleo", ["human", "vleo"])
+        Term(name='heard', argument='1', negated=False)
 
         Raises
         ------
@@ -215,6 +224,10 @@ class Term:
             raise AppError(f"'{text}': after '{name}' comes {wanted}")
         if condition.argument in NUMBER_ARGUMENTS and not _is_positive(argument):
             raise AppError(f"'{text}': '{argument}' is no number of {condition.argument.lower()}")
+        if condition.argument == "WHO":
+            if argument not in cast:
+                raise AppError(f"'{text}': the cast is {', '.join(cast)}, without '{argument}'")
+            argument = str(cast.index(argument))
         return cls(name, argument, negated)
 
     def holds(self, moment: Moment) -> bool:

@@ -17,6 +17,7 @@ from cubeling.app.scenarios.rules.file import read_rules
 from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, Term
 from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.lines import bundled_languages, bundled_lines
+from cubeling.characters import Character, RootDelta
 from cubeling.tracking import CubeModel, Intrinsics
 
 ROOT = Path(__file__).parents[3]
@@ -113,6 +114,9 @@ def test_a_character_that_lacks_an_action_is_not_let_in(tmp_path):
     path.write_text("[[rule]]\nwhen = 'lifted'\ndo = 'bark'\n")
     with pytest.raises(AppError, match=r"bark\.toml: rule\[0\]\.do: human cannot 'bark'"):
         Playground(str(path), Intrinsics.guess((640, 480)))
+    path.write_text("others = ['vleo']\n[[rule]]\nwho = 'vleo'\nwhen = 'seen'\ndo = 'bark'\n")
+    with pytest.raises(AppError, match=r"rule\[0\]\.do: vleo cannot 'bark'"):
+        Playground(str(path), Intrinsics.guess((640, 480)), others=[Character.load("vleo")])
 
 
 def test_what_rules_say_are_the_lines_of_the_scenario(rules):
@@ -139,6 +143,9 @@ def test_what_rules_say_are_the_lines_of_the_scenario(rules):
         ("[[rule]]\nwhen = 'seen'\ngo = 'moon'", "cube, home"),
         ("[[rule]]\nwhen = 'seen'\nwave = 'yes'", "means nothing here"),
         ("[[rule]]\nwhen = 3\ndo = 'wave'", "when must be"),
+        ("[[rule]]\nwho = 'vleo'\nwhen = 'seen'\ndo = 'wave'", "rule[0].who"),
+        ("[[rule]]\nwhen = 'heard vleo'\ndo = 'wave'", "the cast is human, without 'vleo'"),
+        ("others = ['vleo']\n[[rule]]\nwhen = 'heard'\ndo = 'wave'", "as in 'heard WHO'"),
     ],
 )
 def test_a_wrong_file_is_refused_with_its_name_before_anything_loads(cubeling, text, said):
@@ -162,8 +169,9 @@ def test_a_cube_without_a_role_of_a_rule_is_refused(cubeling, rules):
 
 @pytest.mark.parametrize("condition", CONDITIONS)
 def test_every_condition_can_be_asked_and_denied(condition, hand, rules):
-    argument = {"NAME": "shaken", "ROLE": "kiss"}.get(CONDITIONS[condition].argument, "")
-    term = Term.parse(f"{condition} {argument}")
+    arguments = {"NAME": "shaken", "ROLE": "kiss", "WHO": "vleo"}
+    argument = arguments.get(CONDITIONS[condition].argument, "")
+    term = Term.parse(f"{condition} {argument}", ["human", "vleo"])
     scenario = make_scenario(rules)
     moment = _moment(scenario, hand.frame())
     assert term.holds(moment) != dataclasses.replace(term, negated=True).holds(moment)
@@ -184,10 +192,12 @@ def test_the_page_lists_every_condition_and_action():
     assert re.findall(r"^\| `(\w+)` \|", actions, re.M) == list(ACTIONS)
 
 
-def test_the_example_of_the_page_can_be_read(tmp_path):
-    (example,) = re.findall(r"^```toml\n(.*?)^```", PAGE, re.S | re.M)
-    (tmp_path / "page.toml").write_text(example)
-    assert len(read_rules(tmp_path / "page.toml").rules) == 3
+def test_the_examples_of_the_page_can_be_read(tmp_path):
+    path, counts = tmp_path / "page.toml", []
+    for example in re.findall(r"^```toml\n(.*?)^```", PAGE, re.S | re.M):
+        path.write_text(example)
+        counts.append(len(read_rules(path).rules))
+    assert counts == [3, 2]
 
 
 @pytest.mark.slow(reason="a session is replayed")
@@ -237,3 +247,62 @@ def test_a_file_with_too_large_a_cast_is_refused(tmp_path):
     path.write_text(RULES.replace("[[rule]]", f"others = {['vleo'] * 5}\n[[rule]]", 1))
     with pytest.raises(AppError, match="at most 4"):
         make_scenario(str(path))
+
+
+DIALOGUE = """
+others = ["vleo", "vleo"]
+[[rule]]
+when = "lifted"
+say = "Look!"
+[[rule]]
+who = "vleo"
+when = "heard human"
+do = "nod"
+say = "I see"
+for = 0.5
+[[rule]]
+who = "vleo_2"
+while = "lifted"
+go = "cube"
+[[rule]]
+who = "vleo_2"
+while = "always"
+go = "home"
+"""
+
+
+@pytest.fixture
+def dialogue(tmp_path):
+    """Returns what a cast does, frame by frame, of which the first one has just spoken or not."""
+    path = tmp_path / "dialogue.toml"
+    path.write_text(DIALOGUE)
+    lead = make_scenario(str(path))
+    places = RootDelta(0.2, 0.0), RootDelta(0.1, -0.2)
+    cast = [lead, *(lead.scenario_of(at, place) for at, place in enumerate(places, start=1))]
+
+    def update(controls, heard=None):
+        seen = Situation(heard=heard)
+        return [each.update(controls, seen, Inputs()) for each in cast]
+
+    return update
+
+
+def test_each_rule_is_for_the_character_that_it_names(dialogue, hand):
+    dialogue(hand.frame())
+    lifted = dialogue(hand.frame(resting=False, lifted=True))
+    assert [each.events for each in lifted] == [("rule 1",), (), ("rule 3",)]
+    assert [each.command.activity for each in lifted] == ["idle", "idle", "idle"]
+    answered = dialogue(hand.frame(), heard=0)
+    assert [each.events for each in answered] == [(), ("rule 2",), ()]
+    assert answered[1].command.activity == "nod"
+    over = [dialogue(controls) for controls in hand.wait(0.7)][-1]
+    assert over[1].command.activity == "idle", "it watches again"
+
+
+def test_home_is_where_a_character_of_the_cast_stood_first(dialogue, hand):
+    _, _, third = dialogue(hand.frame())
+    assert third.command.locomotion.target == pytest.approx([0.1, -0.2])
+
+
+def test_who_has_no_rule_watches(rules):
+    assert make_scenario(rules).scenario_of(1, RootDelta()) is None

@@ -29,15 +29,18 @@ def spoken(tmp_path_factory, short_session):
     lines = folder / "lines.toml"
     lines.write_text("[voice.en]\nidle = 'I'\n[others.en]\nidle = ['You', 'We']\n")
     path = folder / "cast.mcap"
+    record(short_session, path, scenario="companion", lines=lines, others=OTHERS)
+    return path
+
+
+def record(source, path, **options):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(voices, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
-        options = SessionOptions(
-            scenario="companion", source=str(short_session), robot="none", pictures=False,
-            language="en", lines=lines, others=OTHERS, record=path,
-        )  # fmt: skip
-        with open_session(options) as session:
+        asked = SessionOptions(
+            source=str(source), robot="none", pictures=False, language="en", record=path, **options
+        )
+        with open_session(asked) as session:
             run(session)
-    return path
 
 
 def speeches_in(path, name):
@@ -63,6 +66,32 @@ def test_one_speaks_at_a_time_and_its_lips_move(spoken):
         for command in speeches_in(spoken, name):
             speaking[command.timestamp] += command.speaks
     assert max(speaking.values()) == 1
+
+
+DIALOGUE = """
+others = ["vleo"]
+[[rule]]
+when = "always"
+say = "Hello"
+[[rule]]
+who = "vleo"
+when = "heard human"
+say = "Yes"
+"""
+
+
+@pytest.mark.slow(reason="a session is recorded and processed again")
+def test_two_characters_talk_by_rules_and_do_so_again_in_a_replay(tmp_path, short_session):
+    rules, path = tmp_path / "talk.toml", tmp_path / "talk.mcap"
+    rules.write_text(DIALOGUE)
+    record(short_session, path, scenario=str(rules))
+    ask, answer = (
+        next(each.speech for each in speeches_in(path, name) if each.speech)
+        for name in (LEAD, "vleo")
+    )
+    assert (ask.utterance.text, answer.utterance.text) == ("Hello", "Yes")
+    assert ask.end < answer.start < ask.end + 0.5
+    assert session_parts.check(path, session_info(path).options).identical
 
 
 @pytest.mark.slow(reason="a session is processed again")

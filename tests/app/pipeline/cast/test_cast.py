@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.cast.further_members import FURTHER_PLACES_M, distinct_names
-from cubeling.app.pipeline.choices import MAX_CAST, cast_of
+from cubeling.app.pipeline.cast.further_members import FURTHER_PLACES_M
+from cubeling.app.pipeline.choices import MAX_CAST, cast_of, distinct_names
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.attention import Attention, Company
