@@ -92,16 +92,36 @@ def checked_players(number: float) -> int:
     return int(number)
 
 
-def robots_of(urls: Sequence[str], players: int) -> tuple[str, str]:
-    """Return the robots of the first and the second player; raise AppError for more than play.
+ROBOT_NAMES = "robot", "robot_2"
+"""Names of the robots of the first and the second player, unless they are given others."""
 
-    >>> robots_of(["sim:pleo"], 2)
-    ('sim:pleo', 'none')
+
+def robots_of(
+    given: Sequence[str], players: int, names: tuple[str, str] = ROBOT_NAMES
+) -> tuple[tuple[str, str], tuple[str, str]]:
+    """Return URLs and names of the robots of the first and the second player.
+
+    Each is given as URL or NAME=URL; `names` are those of robots without a name.
+
+    >>> robots_of(["sim:pleo?drop=0.1"], 2)
+    (('sim:pleo?drop=0.1', 'none'), ('robot', 'robot_2'))
+    >>> robots_of(["rex=sim", "tim=sim:pleo"], 2)
+    (('sim', 'sim:pleo'), ('rex', 'tim'))
+
+    Raises
+    ------
+    AppError
+        There are more robots than players, or both have the same name.
     """
-    if len(urls) > players:
-        raise AppError(f"there are {len(urls)} robots for {players}: --players 2 has two")
-    first, second = (*urls, *("sim", "none")[len(urls) :])
-    return first, second
+    if len(given) > players:
+        raise AppError(f"there are {len(given)} robots for {players}: --players 2 has two")
+    found = [re.fullmatch(r"(?:([\w-]+)=)?(.*)", each, re.S) for each in given]
+    urls = (*(each[2] for each in found if each), *("sim", "none")[len(given) :])
+    named = [each[1] if each else None for each in found]
+    first, second = (own or usual for own, usual in zip((*named, None, None), names, strict=False))
+    if first == second:
+        raise AppError(f"two robots have the name '{first}': give one another, NAME=URL")
+    return (urls[0], urls[1]), (first, second)
 
 
 def check_look(name: str) -> None:

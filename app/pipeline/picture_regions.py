@@ -25,8 +25,8 @@ def picture_regions(
     cast: Sequence[tuple[Character, PosedCharacter]],
     interior: Interior | None,
     matrix: Array,
-) -> tuple[Rect, ...]:
-    """Return where the cube and the characters on the table are seen [px], as far as they are.
+) -> tuple[tuple[Rect, ...], tuple[Rect | None, ...]]:
+    """Return where the cubes, and each of the characters on the table are seen [px].
 
     `cubes` are those of the players with their edges [m], `table` is `camera_from_table`,
     `cast` is first who may be in the cube, then all others; `matrix` is the camera's, (3, 3) [px],
@@ -36,11 +36,14 @@ def picture_regions(
     for state, edge in cubes:
         if state.camera_from_cube is not None:
             regions.append(_cube_region(state.camera_from_cube, edge, matrix))
-    on_table = cast if interior is None or interior.left_on_table > 0.0 else cast[1:]
-    for character, posed in on_table:
-        if table is not None and posed.visible:
-            regions.append(_character_region(table, character, posed, matrix))
-    return tuple(region for region in regions if region is not None)
+    inside = interior is not None and interior.left_on_table <= 0.0
+    figures = tuple(
+        _character_region(table, character, posed, matrix)
+        if table is not None and posed.visible and not (inside and number == 0)
+        else None
+        for number, (character, posed) in enumerate(cast)
+    )
+    return tuple(region for region in regions if region is not None), figures
 
 
 def _cube_region(camera_from_cube: Array, edge: float, matrix: Array) -> Rect | None:

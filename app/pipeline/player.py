@@ -27,14 +27,21 @@ class CubePlayer:
     ----------
     name
         Its name among the players.
+    robot
+        The name of its robot.
     cube, intrinsics, known_cubes
         See `TrackedCube`.
     """
 
     def __init__(
-        self, name: str, cube: CubeModel, intrinsics: Intrinsics, known_cubes: Sequence[CubeModel]
+        self,
+        name: str,
+        robot: str,
+        cube: CubeModel,
+        intrinsics: Intrinsics,
+        known_cubes: Sequence[CubeModel],
     ) -> None:
-        self.name, self.cube = name, cube
+        self.name, self.robot, self.cube = name, robot, cube
         self.tracked = TrackedCube(cube, intrinsics, known_cubes)
         """The cube in view, and what it has told of the camera."""
         self.obstacles = Obstacles(cube.edge)
@@ -49,7 +56,7 @@ class CubePlayer:
         """Find the cube, and tell what the hand does with it on the table of the `first` player."""
         state = self.tracked.track(frame, markers)
         controls = on_table_of(first, self.gesture(state))
-        return PlayerStep(self.name, state, controls, self.cube.edge)
+        return PlayerStep(self.name, state, controls, self.cube.edge, self.robot)
 
 
 def on_table_of(first: CubeControls, controls: CubeControls) -> CubeControls:

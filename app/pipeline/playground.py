@@ -13,7 +13,7 @@ from cubeling.app.pipeline.cast.cast import Cast
 from cubeling.app.pipeline.cast.further_members import further_members
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.checkpoint import Checkpoint
-from cubeling.app.pipeline.choices import REALISM_CHOICES, distinct_names
+from cubeling.app.pipeline.choices import REALISM_CHOICES, ROBOT_NAMES, distinct_names
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.picture_regions import picture_regions
@@ -75,6 +75,8 @@ class Playground:
         The rest of the cast, at most four characters.
     further_cubes
         Those of further players, each of whom leads one of `others` in the same scenario.
+    robots
+        Names of the players' robots.
     settings
         Those of the further players; None for the usual ones. The first one's are in `scenario`.
     context
@@ -114,6 +116,7 @@ class Playground:
         character: Character | None = None,
         others: Sequence[Character] = (),
         further_cubes: Sequence[CubeModel] = (),
+        robots: Sequence[str] = ROBOT_NAMES,
         settings: ScenarioSettings | None = None,
         context: "moderngl.Context | None" = None,
         look: str = "auto",
@@ -127,7 +130,7 @@ class Playground:
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
-        self.known_cubes = tuple(known_cubes)
+        self.known_cubes, self._robots = tuple(known_cubes), tuple(robots)
         self._look, self._lap = look, lap
         self._controller, self._inside, self._others = controller, inside, tuple(others)
         self._further_cubes, self._settings = tuple(further_cubes), settings or ScenarioSettings()
@@ -162,8 +165,10 @@ class Playground:
         self.cast = Cast([lead, *further_members(names, self._others, scenario, led, look, edges)])
         """Who is on the table: first the character that the first cube leads."""
         self.players = tuple(
-            CubePlayer(name, each, self.intrinsics, self.known_cubes)
-            for name, each in zip(distinct_names(e.name for e in cubes), cubes, strict=True)
+            CubePlayer(name, robot, each, self.intrinsics, self.known_cubes)
+            for name, robot, each in zip(
+                distinct_names(e.name for e in cubes), self._robots, cubes, strict=False
+            )
         )
         """Who plays, each with a cube."""
         self._detectors = {each.dictionary: MarkerDetector(each.dictionary) for each in cubes}
@@ -328,6 +333,13 @@ class Playground:
         lead, *others = cast.perform(seen, decisions, told, tuple(things), view, replay)
         interior = self._window.update(state, controls, lead.command, inputs.inside)
         self._lap("animation")
+        cubes, figures = picture_regions(
+            [(state, self.cube.edge), *((each.state, each.edge) for each in played)],
+            controls.camera_from_table,
+            [(each.character, each.posed) for each in cast.members if each.posed],
+            interior,
+            self.sight.lens.matrix,
+        )
         step = Step(
             frame,
             state,
@@ -335,13 +347,8 @@ class Playground:
             replace(lead.outcome, hint=self._hint(lead.outcome)),
             lead.posed,
             picture=None,
-            subjects=picture_regions(
-                [(state, self.cube.edge), *((each.state, each.edge) for each in played)],
-                controls.camera_from_table,
-                [(each.character, each.posed) for each in cast.members if each.posed],
-                interior,
-                self.sight.lens.matrix,
-            ),
+            subjects=(*cubes, *(each for each in figures if each is not None)),
+            figures=figures,
             scenario=self.scenario.name,
             has_intensity=self.scenario.has_intensity,
             line=lead.line,

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.affect import Emotion
+from cubeling.app.pipeline.choices import ROBOT_NAMES
 from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
@@ -75,6 +76,9 @@ class PlayerStep:
     edge: float
     """Of the cube [m]."""
 
+    robot: str
+    """Name of the player's robot, which feels what its character does."""
+
     def messages(self) -> dict[str, object]:
         """Return its messages by the last part of their topics."""
         return {"state": self.state, "controls": self.controls}
@@ -107,6 +111,9 @@ class Step:
 
     subjects: tuple[Rect, ...] = ()
     """Where the cube with the hand, and the character are in the picture [px]."""
+
+    figures: tuple[Rect | None, ...] = ()
+    """Where each of the cast is in the picture [px]; None for one that is not seen."""
 
     scenario: str = ""
     """Name of the scenario that decided."""
@@ -167,6 +174,10 @@ class Step:
                 for each in further
                 for part, message in each.messages().items()
             },
+            **{
+                f"/robots/{player.robot}/emotion": led.emotion
+                for player, led in zip(self.players, self.others, strict=False)
+            },
         }
 
 
@@ -226,3 +237,9 @@ class RobotView:
 
     time: float = 0.0
     """Time of the robot's clock [s]."""
+
+    name: str = ROBOT_NAMES[0]
+    """Its name, as the player reads it."""
+
+    second: "RobotView | None" = None
+    """The robot of the second player; None without one."""

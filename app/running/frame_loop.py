@@ -85,7 +85,7 @@ class FrameLoop:
         if self._hidden is not None:
             session = self._session
             session.screen.preview(
-                session.playground.with_picture(self._hidden), session.robot.view()
+                session.playground.with_picture(self._hidden), session.robot_view()
             )
 
     def show_skipped(self) -> None:
@@ -107,7 +107,7 @@ class FrameLoop:
         follows = self._hidden is None and step.frame.index >= self._shown_index
         self._hidden, self._shown_index = None, step.frame.index
         # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
-        self.robot = view = session.robot.view()
+        self.robot = view = session.robot_view()
         self._feel(step)
         if session.player is not None:
             session.player.publish(step.command, step.emotion)

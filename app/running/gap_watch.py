@@ -24,13 +24,16 @@ class _Part:
     """A part that may be missing."""
 
     name: str
-    """ "camera" or "robot", as events and lines name it."""
+    """ "camera", "robot" or the name of a further robot, as events and lines name it."""
 
     gap: Gap | None = None
     """The present gap, whose length is not known yet; None while the part is there."""
 
     lines: int = 0
     """How many lines were said of it."""
+
+    answered: bool = False
+    """Whether it has been there once: before its first answer, a robot is not missing."""
 
 
 class GapWatch:
@@ -54,8 +57,8 @@ class GapWatch:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._session, self._summary, self._say, self._clock = session, summary, say, clock
-        self._camera, self._robot = _Part("camera"), _Part("robot")
-        self._robot_answered = False
+        self._camera = _Part("camera")
+        self._robots: dict[str, _Part] = {}
         self._began = 0.0  # when the camera's gap began, by the computer's clock
 
     def camera_lost(self, problem: str) -> None:
@@ -72,21 +75,29 @@ class GapWatch:
         self._end(self._camera, timestamp)
 
     def watch_robot(self, robot: RobotView, timestamp: float) -> None:
-        """Begin or end a gap of the robot, by its state at a frame [s]."""
+        """Begin or end gaps of the robots, by their states at a frame [s]."""
+        self._watch("robot", robot, timestamp)
+        if robot.second is not None:
+            self._watch(robot.second.name, robot.second, timestamp)
+
+    def _watch(self, name: str, robot: RobotView, timestamp: float) -> None:
+        part = self._robots.setdefault(name, _Part(name))
         if robot.link not in ABSENT:
-            self._robot_answered = True
-            self._end(self._robot, timestamp)
-        elif self._robot_answered:  # before its first answer, it is not missing
-            self._begin(self._robot, timestamp, "it does not answer")
+            part.answered = True
+            self._end(part, timestamp)
+        elif part.answered:
+            self._begin(part, timestamp, "it does not answer")
 
     def close(self) -> None:
         """Complete the gaps that last until the end of the session."""
         if self._camera.gap is not None:  # no frame tells the time
             now = self._camera.gap.start + self._clock() - self._began
             self._summary.gaps.append(self._camera.gap.until(now, back=False))
-        if self._robot.gap is not None:
-            self._summary.gaps.append(self._robot.gap.until(self._summary.last, back=False))
-        self._camera.gap = self._robot.gap = None
+        for part in self._robots.values():
+            if part.gap is not None:
+                self._summary.gaps.append(part.gap.until(self._summary.last, back=False))
+            part.gap = None
+        self._camera.gap = None
 
     def _begin(self, part: _Part, timestamp: float, problem: str) -> None:
         if part.gap is not None:

@@ -11,7 +11,7 @@ class Gap:
     """A time in which a part of the session was missing."""
 
     part: str
-    """ "camera" or "robot"."""
+    """ "camera", "robot" or the name of a further robot."""
 
     start: float
     """Timestamp of the last frame before it [s]."""

@@ -10,7 +10,7 @@ from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.other_cube import cube_for
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.pipeline.step import ReplayInputs, RobotView
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.kept_lens import LensStore
@@ -67,6 +67,9 @@ class OpenedSession:
 
     wire: WireTap
     """Keeps the last bytes of the robot's line, for panels and recordings."""
+
+    second_wire: WireTap
+    """The same of the second player's robot."""
 
     clock: SessionClock
     """The time that the robot lives by."""
@@ -216,6 +219,19 @@ class OpenedSession:
         scenario = scenario_of(self.options, self.options.scenario, playground.cube)
         playground.play(scenario, playground.cube, playground.character)
 
+    @property
+    def robots(self) -> tuple[tuple[RobotLine, WireTap], ...]:
+        """The robots of all players, with the taps on their wires."""
+        first = self.robot, self.wire
+        if self.options.second_robot == "none":
+            return (first,)
+        return first, (self.second_robot, self.second_wire)
+
+    def robot_view(self) -> RobotView:
+        """Return the state of the robot, with that of the second player's."""
+        first, *further = (line.view() for line, _ in self.robots)
+        return replace(first, second=further[0]) if further else first
+
     def exchange_robot(self, robot: RobotLine, wire: WireTap, now: float) -> None:
         """Let another robot show the emotions, from a timestamp on [s]."""
         self.robot.close()
@@ -229,7 +245,12 @@ class OpenedSession:
         from cubeling.app.running.recording import SessionRecording
 
         self.recording = SessionRecording(
-            path, self.options, self.playground, self.source, self.wire, from_within=True
+            path,
+            self.options,
+            self.playground,
+            self.source,
+            [wire for _, wire in self.robots],
+            from_within=True,
         )
         self.playground.fixed = True
 

@@ -140,6 +140,7 @@ def open_session(
             character=character,
             others=others,
             further_cubes=further_cubes,
+            robots=options.robot_names,
             settings=settings_of(options),
             context=context,
             look=options.look,
@@ -161,6 +162,7 @@ def open_session(
         if options.stage != "camera" and replayed is not None:
             replay_inputs = replayed.replay_inputs(options.stage)
         wire, clock = WireTap(), SessionClock()
+        second_wire = WireTap(f"/robots/{options.robot_names[1]}/wire")
         recording = None
         if options.record is not None:
             from cubeling.app.running.recording import SessionRecording
@@ -171,7 +173,7 @@ def open_session(
                     options,
                     playground,
                     source,
-                    wire,
+                    (wire, second_wire),
                     from_within=options.start_s > 0.0,
                 )
             )
@@ -180,12 +182,15 @@ def open_session(
         lines = None if replayed is None else replayed.lines
         speaker = open_speaker(options, (character, *others), lines, waits=stepped)
         closing.callback(speaker.close)
-        robot = closing.enter_context(
-            RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)
-        )
-        second = closing.enter_context(
-            RobotLine.open(
-                options.second_robot, clock, None, options.robot_settings, stepped=stepped
+        robot, second = (
+            closing.enter_context(
+                RobotLine.open(url, clock, tap, options.robot_settings, name=name, stepped=stepped)
+            )
+            for url, tap, name in zip(
+                (options.robot, options.second_robot),
+                (wire, second_wire),
+                options.robot_names,
+                strict=True,
             )
         )
         session = OpenedSession(
@@ -199,6 +204,7 @@ def open_session(
             robot=robot,
             second_robot=second,
             wire=wire,
+            second_wire=second_wire,
             clock=clock,
             player=player,
             pace=pace,
@@ -299,7 +305,8 @@ def _pace(
 ) -> Pace | None:
     """Return the pace of recorded frames: that of who watches them or lives with them."""
     # A real robot and other players live in real time.
-    real_time = player is not None or (is_real_robot(options.robot) and not options.fast)
+    real = is_real_robot(options.robot) or is_real_robot(options.second_robot)
+    real_time = player is not None or (real and not options.fast)
     if source.live or not (options.windowed or real_time):
         return None
     watched = options.windowed and options.record is None  # what is written has every frame

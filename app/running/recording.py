@@ -1,5 +1,6 @@
 """A recording of a session, from its first frame or from a later one on."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -32,8 +33,8 @@ class SessionRecording(Closeable):
         The pipeline; its scenario, cube and character stay until `close`.
     source
         Where the frames come from.
-    wire
-        The robot's bytes.
+    wires
+        The bytes of the robots; those of the first one may be exchanged.
     from_within
         Whether it begins after the first frame of the source.
 
@@ -49,12 +50,12 @@ class SessionRecording(Closeable):
         options: SessionOptions,
         playground: Playground,
         source: FrameSource,
-        wire: WireTap,
+        wires: Sequence[WireTap],
         *,
         from_within: bool = False,
     ) -> None:
         self.path = path
-        self._playground, self._wire = playground, wire
+        self._playground, self._wires = playground, list(wires)
         self._from_within = from_within
         self._first: float | None = None
         self._last = 0.0
@@ -65,7 +66,7 @@ class SessionRecording(Closeable):
         self._recorder = Recorder(path, {**named.metadata(), "rate": f"{source.rate:g}"})
         self._live = source.live
         if not from_within:  # with the bytes before the first frame
-            wire.record_to(self._recorder)
+            self._record_wires(self._recorder)
 
     @property
     def seconds(self) -> float:
@@ -92,7 +93,7 @@ class SessionRecording(Closeable):
             if self._live:  # its frames are shown as they come, and pauses shift their timestamps
                 self._recorder.clock(datetime.now(UTC) - timedelta(seconds=now))
             if self._from_within:
-                self._wire.record_to(self._recorder, now)
+                self._record_wires(self._recorder, now)
         self._recorder.write(step, inputs)
         if step.tracker_error:
             self.event(f"tracker failed: {step.tracker_error}", now)
@@ -108,7 +109,7 @@ class SessionRecording(Closeable):
 
     def follow_wire(self, wire: WireTap, since: float) -> None:
         """Record the bytes of another robot from a timestamp on [s]."""
-        self._wire = wire
+        self._wires[0] = wire
         wire.record_to(self._recorder, since)
 
     def event(self, name: str, timestamp: float) -> None:
@@ -127,5 +128,9 @@ class SessionRecording(Closeable):
 
     def close(self) -> None:
         """Complete the file; without a frame, leave none. A second call does nothing."""
-        self._wire.record_to(None)
+        self._record_wires(None)
         self._recorder.close()
+
+    def _record_wires(self, recorder: Recorder | None, since: float = 0.0) -> None:
+        for wire in self._wires:
+            wire.record_to(recorder, since)

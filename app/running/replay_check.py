@@ -57,6 +57,7 @@ def check_session(
         pictures=False,
         appearance=session.has(APPEARANCE_TOPIC),
         robot="none",
+        second_robot="none",
         record=None,
         output=None,
     )

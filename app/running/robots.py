@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from cubeling.affect import NEUTRAL, closest_word
+from cubeling.app.pipeline.choices import ROBOT_NAMES
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.pipeline.step import RobotView
 from cubeling.robot import (
@@ -47,11 +48,14 @@ class RobotLine(Closeable):
         robot: "Robot | None" = None,
         clock: Clock = time.monotonic,
         *,
+        name: str = ROBOT_NAMES[0],
         real: bool = False,
         stepped: "SteppedRobot | None" = None,
     ) -> None:
         self.clock = clock
         """The time that `on_bytes` receives [s]."""
+        self.name = name
+        """What the player reads of it."""
         self._robot = robot
         self._real = real
         self._stepped = stepped
@@ -66,6 +70,7 @@ class RobotLine(Closeable):
         on_bytes: OnBytes | None = None,
         settings: Path | None = None,
         *,
+        name: str = ROBOT_NAMES[0],
         stepped: bool = False,
     ) -> Self:
         """Connect; raises RobotError if the port does not open or no robot answers.
@@ -75,25 +80,27 @@ class RobotLine(Closeable):
         url
             "none"; "sim" for a simulated robot behind a pseudo-terminal of this computer; or any
             URL that `cubeling.robot.connect` takes: "pleo:/dev/ttyACM0", "sim:opencat".
+        name
+            What the player reads of it.
         stepped
             Whether a simulated robot advances with the frames, for a session that is processed
             faster or slower than real time: its bytes are then the same every time.
         """
         if url == "none":
-            return cls(clock=clock)
+            return cls(clock=clock, name=name)
         from cubeling.robot import SimulatedPort, SteppedRobot, connect
 
         real = is_real_robot(url)
         with ExitStack() as closing:
             if stepped and not real:
                 robot = SteppedRobot(url, on_bytes=on_bytes, settings=settings)
-                line = cls(robot, lambda: robot.now, stepped=robot)
+                line = cls(robot, lambda: robot.now, name=name, stepped=robot)
                 closing.enter_context(robot)
             else:
                 if url == "sim":
                     url = closing.enter_context(SimulatedPort(clock=clock)).url
                 connected = connect(url, clock=clock, on_bytes=on_bytes, settings=settings)
-                line = cls(closing.enter_context(connected), clock, real=real)
+                line = cls(closing.enter_context(connected), clock, name=name, real=real)
             line._closing = closing.pop_all()
         return line
 
@@ -110,7 +117,7 @@ class RobotLine(Closeable):
         """Return what the robot reports, or the requested emotion where there is no robot."""
         if self._robot is None:
             asked = NEUTRAL if self._target is None else self._target.emotion
-            return RobotView("none", asked.valence, asked.label)
+            return RobotView("none", asked.valence, asked.label, name=self.name)
         telemetry, catalogue = self._robot.telemetry, None
         with suppress(RobotError):  # the handshake is not over yet
             catalogue = self._robot.catalogue
@@ -128,6 +135,7 @@ class RobotLine(Closeable):
             telemetry=telemetry,
             catalogue=catalogue,
             time=self.clock(),
+            name=self.name,
         )
 
     def log(self) -> tuple[LogLine, ...]:

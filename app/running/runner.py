@@ -58,8 +58,8 @@ def run(
         runner.run()
         # A lost robot does not end the session and its link keeps retrying: report it at the end.
         try:
-            session.robot.check()
-            session.second_robot.check()
+            for robot, _ in session.robots:
+                robot.check()
         except RobotError as error:
             summary.lost = summary.lost or error
     except KeyboardInterrupt:
@@ -161,7 +161,8 @@ class _Runner:
             # A frame that is late is not drawn, and all else is as if it were.
             drawn = self._is_in_time(frame)
             acted = loop.asked_by_player
-            session.wire.align(frame.timestamp - session.robot.clock())
+            for robot, wire in session.robots:
+                wire.align(frame.timestamp - robot.clock())
             with defer_interrupts():
                 step = loop.step(frame, drawn=drawn)
             self._shown_at = time.monotonic() if drawn else self._shown_at

@@ -201,9 +201,9 @@ class Summary:
         )
         if self.camera is not None:
             table.add_row("camera", camera_line(self.camera))
-        for part in ("camera", "robot"):
-            if gaps := [gap for gap in self.gaps if gap.part == part]:
-                table.add_row(f"{part} lost", gaps_line(gaps))
+        for part in sorted({gap.part for gap in self.gaps}):
+            gaps = [gap for gap in self.gaps if gap.part == part]
+            table.add_row(f"{part} lost", gaps_line(gaps))
         if self.lens is not None:
             table.add_row("lens", self.lens)
         names = dict.fromkeys([self.scenario, *(name for _, name in self.scenarios)])

@@ -3,6 +3,7 @@
 import threading
 from typing import TYPE_CHECKING
 
+from cubeling.app.session.encoding import WIRE_TOPIC
 from cubeling.app.ui.panels.wire_log import WireLog
 from cubeling.robot import Direction
 
@@ -16,9 +17,15 @@ class WireTap:
     The link's thread calls it. The difference between the clock of the robot and the timestamps of
     the frames is known from the first frame on. The bytes before it, such as the handshake, are
     kept: every recording begins with them, so that it can be decoded.
+
+    Parameters
+    ----------
+    topic
+        The channel of a recording for them.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, topic: str = WIRE_TOPIC) -> None:
+        self._topic = topic
         self.log = WireLog()
         """The last bytes, for the panel that shows them."""
         self._lock = threading.Lock()
@@ -34,8 +41,8 @@ class WireTap:
         with self._lock:
             if not self._aligned:
                 self._handshake.append((direction, data, time))
-            elif self._recorder is not None:
-                self._recorder.wire(direction, data, self._timestamp(time))
+            else:
+                self._write(direction, data, time)
 
     def align(self, offset: float) -> None:
         """Set what to add to the clock's time to get that of the frames.
@@ -64,9 +71,12 @@ class WireTap:
                 self._write_handshake()
 
     def _write_handshake(self) -> None:
+        for direction, data, time in self._handshake:
+            self._write(direction, data, time)
+
+    def _write(self, direction: str, data: bytes, time: float) -> None:
         if self._recorder is not None:
-            for direction, data, time in self._handshake:
-                self._recorder.wire(direction, data, self._timestamp(time))
+            self._recorder.wire(direction, data, self._timestamp(time), self._topic)
 
     def _timestamp(self, time: float) -> float:
         """Return the timestamp of a time of the robot's clock [s]."""

@@ -82,6 +82,15 @@ last part."""
 PLAYER_TYPES: dict[str, type[Any]] = {"state": CubeState, "controls": CubeControls}
 """The same of each further player, whose channels are /cubes/NAME/PART."""
 
+ROBOT_TYPES: dict[str, type[Any]] = {"emotion": EmotionTarget}
+"""The same of each further player's robot, whose channels are /robots/NAME/PART."""
+
+WIRE_TOPIC = "/robot/wire"
+"""The channel of the bytes of the robot's line; those of a further one are on /robots/NAME/wire."""
+
+FOLDER_TYPES = {"cast": CAST_TYPES, "cubes": PLAYER_TYPES, "robots": ROBOT_TYPES}
+"""The types of the messages in each folder of channels /FOLDER/NAME/PART."""
+
 
 def message_type(topic: str) -> type[Any] | None:
     """Return the type of the messages on a channel between camera and picture; None for others.
@@ -89,12 +98,8 @@ def message_type(topic: str) -> type[Any] | None:
     >>> message_type("/cast/vleo/pose").__name__
     'PosedCharacter'
     """
-    folder, _, part = topic.rpartition("/")
-    if folder.startswith("/cast/"):
-        return CAST_TYPES.get(part)
-    if folder.startswith("/cubes/"):
-        return PLAYER_TYPES.get(part)
-    return CHANNEL_TYPES.get(topic)
+    _, folder, *name, part = topic.split("/") if topic.count("/") > 1 else ("", "", topic)
+    return FOLDER_TYPES.get(folder, {}).get(part) if name else CHANNEL_TYPES.get(topic)
 
 
 def encode(message: object) -> bytes:

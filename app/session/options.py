@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Self
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.choices import REALISM_CHOICES, checked_players
+from cubeling.app.pipeline.choices import REALISM_CHOICES, ROBOT_NAMES, checked_players
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
 START_STAGES = ("camera", "state", "controls", "appearance", "command", "pose")
@@ -95,6 +95,9 @@ class SessionOptions:
     second_robot: str = "none"
     """The same of the second player's."""
 
+    robot_names: tuple[str, str] = ROBOT_NAMES
+    """Names of the two."""
+
     robot_settings: Path | None = None
     """A .toml file for the robot's driver."""
 
@@ -181,6 +184,7 @@ class SessionOptions:
             "scenario": self.scenario,
             "cube": self.cube or "",
             "players": str(self.players),
+            "robot_names": "\n".join(self.robot_names),
             "further_cubes": "\n".join(self.cubes[1 : self.players]),
             "character": self.character or "",
             "others": "\n".join(self.others),
@@ -212,12 +216,14 @@ class SessionOptions:
                 stated = metadata[name]
                 raise ValueError(f"its '{name}' is {stated!r:.40}, which is no number") from None
         cube = metadata.get("cube")
+        names = (*metadata.get("robot_names", "").splitlines(), *ROBOT_NAMES)[:2]
         realism = metadata.get("realism", ",".join(REALISM_CHOICES))
         return cls(
             scenario=metadata["scenario"],
             source=source,
             cubes=(*((cube,) if cube else ()), *metadata.get("further_cubes", "").splitlines()),
             players=checked_players(numbers["players"]),
+            robot_names=(names[0], names[1]),
             character=metadata.get("character") or None,
             others=tuple(metadata.get("others", "").splitlines()),
             controller=metadata.get("controller", "tree"),

@@ -31,6 +31,7 @@ from cubeling.app.session.encoding import (
     INPUTS_TOPIC,
     SESSION_FORMAT,
     SESSION_RECORD,
+    WIRE_TOPIC,
     encode,
     encode_sound,
     line_topic,
@@ -53,7 +54,7 @@ are some seconds of a session, as a disk may take that long to sync."""
 
 OTHER_SCHEMAS = {
     INPUTS_TOPIC: ("cubeling.RecordedInputs", schema(RecordedInputs)),
-    "/robot/wire": (
+    WIRE_TOPIC: (
         "cubeling.Wire",
         b'{"type":"object","properties":{"direction":{"enum":["tx","rx"]},"hex":{"type":"string"}}}',
     ),
@@ -69,6 +70,8 @@ OTHER_SCHEMAS = {
 def json_schema(topic: str) -> tuple[str, bytes]:
     """Return name and text of the JSON Schema of a topic."""
     kind = message_type(topic)
+    if topic.startswith("/robots/") and topic.endswith("/wire"):
+        topic = WIRE_TOPIC
     return OTHER_SCHEMAS[topic] if kind is None else (f"cubeling.{kind.__name__}", schema(kind))
 
 
@@ -156,10 +159,10 @@ class Recorder(Closeable):
         if self._steps == 1:  # so that a session that is killed at once has a picture
             self._submit(self._end_chunk)
 
-    def wire(self, direction: str, data: bytes, timestamp: float) -> None:
-        """Record bytes that were sent to the robot ("tx") or received from it ("rx")."""
+    def wire(self, direction: str, data: bytes, timestamp: float, topic: str = WIRE_TOPIC) -> None:
+        """Record bytes that were sent to a robot ("tx") or received from it ("rx")."""
         line = json.dumps({"direction": direction, "hex": data.hex()}).encode()
-        self._json("/robot/wire", lambda: line, timestamp)
+        self._json(topic, lambda: line, timestamp)
 
     def event(self, name: str, timestamp: float) -> None:
         """Record an event by its name, at a time of the session [s]."""

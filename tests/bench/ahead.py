@@ -151,7 +151,7 @@ def _frames(states: list[CubeState], ahead: float) -> Iterator[tuple[Array, Arra
         table = se3.inverse(controls.camera_from_table)
         soon = replace(controls, position=(table @ expected.camera_from_cube)[[0, 2], 3])
         predicted = replace(state, camera_from_cube=expected.camera_from_cube)
-        cast, inputs = playground.cast, Inputs()
+        cast, inputs = playground.cast, [Inputs()]
         seen = [SeenCube(predicted, soon)]
         decisions = cast.decide(seen, inputs)
         things, view = obstacles.update(predicted, soon), view_of(soon, playground.sight.lens)

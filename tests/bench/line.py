@@ -94,7 +94,7 @@ def measure(
             marks.append(time.perf_counter())
             controls = playground.players[0].gesture(state)
             cast = playground.cast
-            outcome = cast.decide([SeenCube(state, controls)], Inputs())[0]
+            outcome = cast.decide([SeenCube(state, controls)], [Inputs()])[0]
             marks.append(time.perf_counter())
             posed = cast.lead.perform(outcome.command).posed
             marks.append(time.perf_counter())

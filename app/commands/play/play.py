@@ -143,7 +143,7 @@ def play(
 
     record_codec, video_codec = codecs_of(codec, record, output)
     character, others = cast_of(cast, character)
-    robot, second_robot = robots_of(robots or (), players)
+    (robot, second_robot), robot_names = robots_of(robots or (), players)
     options = SessionOptions(
         scenario=scenario,
         source=source,
@@ -170,6 +170,7 @@ def play(
         quality=checked_quality(quality),
         robot=robot,
         second_robot=second_robot,
+        robot_names=robot_names,
         robot_settings=robot_settings,
         record=record,
         codec=record_codec,

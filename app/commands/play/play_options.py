@@ -156,15 +156,6 @@ PatienceOption = Annotated[
         rich_help_panel=PICTURE_GROUP,
     ),
 ]
-RobotOption = Annotated[
-    str,
-    typer.Option(
-        "--robot",
-        "-r",
-        help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT. Other protocols than "
-        "ours have a prefix: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo.",
-    ),
-]
 RobotsOption = Annotated[
     list[str] | None,
     typer.Option(
@@ -173,7 +164,7 @@ RobotsOption = Annotated[
         metavar="<str>",
         help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT. Other protocols than "
         "ours have a prefix: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo. With --players 2, repeat "
-        "it for the second player's.",
+        "it for the second player's. A name may come first: rex=sim.",
     ),
 ]
 RobotSettingsOption = Annotated[

@@ -37,14 +37,14 @@ from cubeling.app.commands.play.play_options import (
     QualityOption,
     RealismOption,
     RecordOption,
-    RobotOption,
     RobotSettingsOption,
+    RobotsOption,
     SoundsOption,
     codecs_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.choices import cast_of, inside_of, realism_of
+from cubeling.app.pipeline.choices import MAX_PLAYERS, cast_of, inside_of, realism_of, robots_of
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
@@ -70,7 +70,7 @@ def replay(
     idle: IdleOption = None,
     own_motions_only: OwnMotionsOption = False,
     personality: PersonalityOption = None,
-    robot: RobotOption = "sim",
+    robots: RobotsOption = None,
     robot_settings: RobotSettingsOption = None,
     record: RecordOption = None,
     codec: CodecOption = "auto",
@@ -150,6 +150,8 @@ def replay(
         character, others = cast_of(cast, character)
         chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
         check_publisher(mqtt, player)
+        # Of how many players the session is, is known once it is read.
+        (robot, second_robot), robot_names = robots_of(robots or (), MAX_PLAYERS)
         asked = SessionOptions(
             scenario=scenario or "",
             source=str(session),
@@ -176,6 +178,9 @@ def replay(
 
         file = closing.enter_context(SessionFile(session, salvage=salvage, opened=opened))
         info, recorded = file.info, file.info.options
+        (robot, second_robot), robot_names = robots_of(
+            robots or (), recorded.players, recorded.robot_names
+        )
         options = replace(
             recorded,
             scenario=scenario or recorded.scenario,
@@ -188,6 +193,8 @@ def replay(
             whole_limbs=character is not None or recorded.whole_limbs,
             personality=personality or recorded.personality,
             robot=robot,
+            second_robot=second_robot,
+            robot_names=robot_names,
             robot_settings=robot_settings,
             record=record,
             codec=record_codec,

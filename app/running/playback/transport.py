@@ -116,7 +116,8 @@ class Transport(Closeable):
         if self.timestamp is None:
             return
         if paused:
-            self._session.wire.hold(self.timestamp)
+            for _, wire in self._session.robots:
+                wire.hold(self.timestamp)
         else:
             self._feed.close_gap()
         if self._session.recording is not None:

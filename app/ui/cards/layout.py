@@ -4,7 +4,8 @@ They never lie over each other, nor over the hint above them. In a narrow pictur
 is below the hint, and one at the bottom leaves no room beside it.
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -42,6 +43,16 @@ STAY_ADVANTAGE, FREE_ADVANTAGE = 0.1, 0.05
 from which it drives another card."""
 
 
+LABEL_DISTANCE = 8.0
+"""Between a label and its character."""
+
+LABEL_STAY_S = 0.7
+"""A label goes to a better place once that has been free for so long [s]."""
+
+NOWHERE = 5
+"""The side of a label that is left out: the number of the others."""
+
+
 def card_box(
     corner: Corner,
     size: tuple[float, float],
@@ -70,14 +81,14 @@ def card_box(
     return x, y, x + width, y + height
 
 
-def are_apart(box: Rect, others: Sequence[Rect]) -> bool:
-    """Return whether a card has `CARD_GAP` to all others."""
+def are_apart(box: Rect, others: Sequence[Rect], gap: float = CARD_GAP) -> bool:
+    """Return whether a card has a gap to all others."""
     left, top, right, bottom = box
     return all(
-        right + CARD_GAP <= other_left
-        or other_right + CARD_GAP <= left
-        or bottom + CARD_GAP <= other_top
-        or other_bottom + CARD_GAP <= top
+        right + gap <= other_left
+        or other_right + gap <= left
+        or bottom + gap <= other_top
+        or other_bottom + gap <= top
         for other_left, other_top, other_right, other_bottom in others
     )
 
@@ -123,20 +134,28 @@ class CardLayout:
         self._cards: dict[Corner, _Placed] = {}
         self._slides: dict[Corner, _Slide] = {}
         self._now: float | None = None
+        self.labels = LabelLayout()
+        """Where the labels of the characters are."""
 
     def box(self, corner: Corner, size: tuple[float, float], picture_width: float) -> Rect:
         """Return where a card of a size lies in a corner, as `card_box` does."""
         return card_box(corner, size, picture_width, self._right_top)
 
-    def slide(self, home: Corner, box: Rect, now: float) -> tuple[float, float]:
+    def slide(
+        self, home: Corner, box: Rect, now: float, subjects: Sequence[Rect] = ()
+    ) -> tuple[float, float]:
         """Return the top left corner of a card on its way to a box, at a time [s].
 
-        It starts on the way when the box is another one; a new card is there at once.
+        It starts on the way when the box is another one. A new card is there at once, and so is one
+        whose way leads over a subject that it does not hide yet.
         """
         place = box[:2]
         slide = self._slides.get(home) or _Slide(place, place, now)
         if slide.end != place:
             slide = _Slide(slide.at(now), place, now)
+            beside = [each for each in subjects if are_apart(_moved(box, slide.start), [each], 0.0)]
+            if not are_apart(_swept(slide.start, box), beside, 0.0):
+                slide = _Slide(place, place, now)
         self._slides[home] = slide
         return slide.at(now)
 
@@ -174,6 +193,18 @@ class CardLayout:
             _move(card, boxes, placed, others, now)
             placed.append(boxes[card.corner])
         return {home: card.corner for home, card in self._cards.items() if home in cards}
+
+
+def _moved(box: Rect, corner: tuple[float, float]) -> Rect:
+    """Return a box with its top left corner at another place."""
+    x, y = corner
+    return x, y, x + box[2] - box[0], y + box[3] - box[1]
+
+
+def _swept(start: tuple[float, float], box: Rect) -> Rect:
+    """Return what a card passes over on its way from a place of its corner to a box."""
+    (left, top, right, bottom), (x, y, end, low) = box, _moved(box, start)
+    return min(left, x), min(top, y), max(right, end), max(bottom, low)
 
 
 def _move(
@@ -215,3 +246,91 @@ def _hidden_share(card: Rect, subjects: Sequence[Rect]) -> float:
             smaller = min(area, max((right - left) * (bottom - top), 1.0))
             shares.append(wide * high / smaller)
     return min(max(shares), 1.0)
+
+
+@dataclass
+class _LabelPlace:
+    """Where a label is."""
+
+    side: int
+    """Its side of the character, of `_label_sides`; the last one is nowhere."""
+
+    better_since: float = math.inf
+    """Since when another side would be better [s]; ∞ if none is."""
+
+
+class LabelLayout:
+    """Chooses places for the labels of one sequence of pictures.
+
+    A label is above its character's head, or at another side where it would be in the way there: it
+    hides nobody, no cube and no card. Where there is no such place, it is left out.
+    """
+
+    def __init__(self) -> None:
+        self._places: dict[str, _LabelPlace] = {}
+
+    def update(
+        self,
+        figures: Mapping[str, Rect],
+        sizes: Mapping[str, tuple[float, float]],
+        taken: Sequence[Rect],
+        picture_width: float,
+        now: float,
+    ) -> dict[str, Rect]:
+        """Return where the labels are at a time [s].
+
+        Parameters
+        ----------
+        figures
+            Where the characters are, by name.
+        sizes
+            Those of their labels.
+        taken
+            Where no label may be: all characters, cubes and cards.
+        picture_width, now
+            That of the picture, and the time [s]; all lengths are in units of the canvas.
+        """
+        placed: dict[str, Rect] = {}
+        for name, figure in figures.items():
+            others = [*(rect for rect in taken if rect != figure), *placed.values()]
+            free = {
+                side: box
+                for side, box in enumerate(_label_sides(figure, sizes[name], picture_width))
+                if _is_inside(box, picture_width) and are_apart(box, others, 0.0)
+            }
+            box = free.get(self._side(name, free, now))
+            if box is not None:
+                placed[name] = box
+        return placed
+
+    def _side(self, name: str, free: Collection[int], now: float) -> int:
+        """Return the side of a label, of those that are free."""
+        best = min(free, default=NOWHERE)
+        place = self._places.setdefault(name, _LabelPlace(best))
+        if best >= place.side:
+            place.better_since = math.inf
+        else:
+            place.better_since = min(place.better_since, now)
+        if place.side not in free or now - place.better_since >= LABEL_STAY_S:
+            place.side, place.better_since = best, math.inf
+        return place.side
+
+
+def _label_sides(figure: Rect, size: tuple[float, float], picture_width: float) -> tuple[Rect, ...]:
+    """Return the sides of a label, the best first: above a figure, beside its head, at its feet."""
+    left, top, right, bottom = figure
+    width, height = size
+    middle = min(max((left + right - width) / 2, CARD_MARGIN), picture_width - CARD_MARGIN - width)
+    corners = (
+        (middle, top - LABEL_DISTANCE - height),
+        (right + LABEL_DISTANCE, top),
+        (left - LABEL_DISTANCE - width, top),
+        (middle, bottom + LABEL_DISTANCE),
+        (middle, top - 2 * (LABEL_DISTANCE + height)),
+    )
+    return tuple((x, y, x + width, y + height) for x, y in corners)
+
+
+def _is_inside(box: Rect, picture_width: float) -> bool:
+    left, top, right, bottom = box
+    return left >= 0.0 and top >= 0.0 and right <= picture_width and bottom <= PICTURE_HEIGHT

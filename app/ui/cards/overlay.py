@@ -1,14 +1,18 @@
 """Cards over the picture: the hint, the character's action, the robot's mood."""
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.pipeline.step import Rect, RobotView, Step, speech_start
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.cards.faces import draw_face
+from cubeling.app.ui.cards.labels import label, readable
 from cubeling.app.ui.cards.layout import (
     CARD_GAP,
     CARD_MARGIN,
@@ -98,15 +102,7 @@ def cards_over(
     width = size[0] / scale
     hint = step.outcome.hint
     finished = [_hint(hint, width, scale)] if hint else []
-    if virtual_robot is None or robot.real or width < MIN_VIRTUAL_ROBOT_WIDTH:
-        mood = _robot(robot.link, robot.label, _finite(robot.mood), scale)
-    else:
-        portrait = virtual_robot.portrait(step.emotion)
-        # The knob of the mood moves with the portrait, so that the card is drawn as seldom.
-        mood = virtual_robot.card(
-            (robot.link, robot.label, scale), lambda: _virtual_robot(robot, portrait, scale)
-        )
-    cards: dict[Corner, Canvas] = {"bottom right": mood}
+    cards = _robots(step, robot, virtual_robot if width >= MIN_VIRTUAL_ROBOT_WIDTH else None, scale)
     if step.controls.camera_from_table is not None:
         name, command = step.outcome.icon, step.command
         moves = command.activity == "move" or name in ("stand", "walk", "run", "hop")
@@ -128,13 +124,57 @@ def cards_over(
     boxes = []
     for home, corner in corners.items():
         boxes.append(layout.box(corner, sizes[home], width))
-        finished.append(cards[home].card(*layout.slide(home, boxes[-1], now)))
-    said = subtitle(step.command.speech, now)
+        finished.append(cards[home].card(*layout.slide(home, boxes[-1], now, subjects)))
+    speaker = max(step.cast, key=speech_start)
+    said = subtitle(speaker.command.speech, now)
     if said:
+        words = f"{readable(speaker.name)}: {said}" if step.others else said
         room = subtitle_room(width, max(card_width for card_width, _ in sizes.values()))
-        canvas = draw_subtitle(said, room, scale)
+        canvas = draw_subtitle(words, room, scale)
         finished.append(canvas.card(*subtitle_place(canvas.size, width, boxes)))
+    if step.others:
+        taken = [*subjects, *boxes, *(card.box(scale) for card in finished)]
+        finished += _labels(step, layout, taken, width, scale)
     return finished
+
+
+def _robots(
+    step: Step, robot: RobotView, virtual_robot: VirtualRobot | None, scale: float
+) -> dict[Corner, Canvas]:
+    """Return the cards of the players' robots by their first corner."""
+    cards: dict[Corner, Canvas] = {"bottom right": _mood(robot, step.emotion, virtual_robot, scale)}
+    if robot.second is not None and step.players:
+        twin = None if virtual_robot is None else virtual_robot.twin
+        cards["top right"] = _mood(robot.second, step.others[0].emotion, twin, scale)
+    return cards
+
+
+def _mood(
+    robot: RobotView, emotion: EmotionTarget, virtual_robot: VirtualRobot | None, scale: float
+) -> Canvas:
+    """Return the card of a robot: as a picture, unless it is a real one, or as a drawn face."""
+    if virtual_robot is None or robot.real:
+        return _robot(robot.name, robot.link, robot.label, _finite(robot.mood), scale)
+    portrait = virtual_robot.portrait(emotion)
+    # The knob of the mood moves with the portrait, so that the card is drawn as seldom.
+    content = robot.name, robot.link, robot.label, scale
+    return virtual_robot.card(content, lambda: _virtual_robot(robot, portrait, scale))
+
+
+def _labels(
+    step: Step, layout: CardLayout, taken: Sequence[Rect], width: float, scale: float
+) -> list[Card]:
+    """Return the labels of the cast."""
+    canvases, figures = {}, {}
+    for seen, figure in zip(step.cast, step.figures, strict=False):
+        if figure is not None:
+            left, top, right, bottom = figure
+            figures[seen.name] = left / scale, top / scale, right / scale, bottom / scale
+            mood = seen.emotion.emotion.valence
+            canvases[seen.name] = label(seen.name, mood, seen.command.speaks, scale)
+    sizes = {name: canvas.size for name, canvas in canvases.items()}
+    places = layout.labels.update(figures, sizes, taken, width, step.frame.timestamp)
+    return [canvases[name].card(*box[:2]) for name, box in places.items()]
 
 
 def virtual_robot_side(height: int) -> int:
@@ -250,10 +290,11 @@ def _finite(mood: float) -> float:
 
 
 @lru_cache(maxsize=8)
-def _robot(link: str, label: str, mood: float, scale: float) -> Canvas:
-    words = {"none": "no robot", "ready": f"robot is {label}"}.get(link, f"robot {link}")
+def _robot(name: str, link: str, label: str, mood: float, scale: float) -> Canvas:
+    name = name.replace("_", " ")
+    words = {"none": "no robot", "ready": f"{name} is {label}"}.get(link, f"{name} {link}")
     canvas = _robot_background(words, scale).copy()
-    draw_face(canvas, 56, 54, 38, mood)
+    draw_face(canvas, 56, 54, 38, mood, crest=True)
     _mood_knob(canvas, MOOD_BAR_X, BAR_Y, MOOD_BAR_WIDTH, mood)
     return canvas
 
@@ -262,7 +303,7 @@ def _virtual_robot(robot: RobotView, portrait: NDArray[np.uint8], scale: float) 
     caption = {"none": "no robot connected", "ready": "simulated robot"}.get(
         robot.link, f"simulated robot {robot.link}"
     )
-    words = f"robot is {robot.label}"
+    words = f"{robot.name.replace('_', ' ')} is {robot.label}"
     canvas = _virtual_robot_background(words, caption, scale).copy()
     canvas.picture(VIRTUAL_ROBOT_FRAME, VIRTUAL_ROBOT_FRAME, portrait, 12)
     _mood_knob(canvas, *VIRTUAL_ROBOT_BAR, _finite(robot.mood))
@@ -311,37 +352,3 @@ def _mood_scale(canvas: Canvas, x: float, y: float, length: float) -> None:
         ("happy", 1.0, "right"),
     ):
         canvas.text(x + length * share, y + 27, name, 14, QUIET, align)
-
-
-def draw_face(canvas: Canvas, x: float, y: float, radius: float, mood: float) -> None:
-    """Draw the robot's face in a circle; `mood` is from angry, −1, over neutral to happy, 1."""
-    skin = mood_color(mood)
-    shade = between(skin, INK, 0.22)
-    for side in (-0.5, 0.0, 0.5):  # the crest
-        canvas.disc(x + side * radius, y - radius * (0.98 - 0.22 * abs(side)), radius * 0.2, shade)
-    canvas.disc(x, y, radius, skin)
-    for side in (-1, 1):
-        _eye(canvas, x + side * 0.4 * radius, y - 0.18 * radius, radius, side, mood)
-        canvas.disc(x + side * 0.14 * radius, y + 0.2 * radius, radius * 0.05, shade)
-    _mouth(canvas, x, y + 0.48 * radius, radius, mood)
-
-
-def _eye(canvas: Canvas, x: float, y: float, radius: float, side: int, mood: float) -> None:
-    canvas.disc(x, y, radius * 0.24, PAPER)
-    canvas.disc(x - side * radius * 0.03, y + radius * 0.03, radius * 0.15, INK)
-    canvas.disc(x + radius * 0.03, y - radius * 0.05, radius * 0.055, PAPER)
-    # Brows slope towards the nose when angry, and arch when happy.
-    across = np.linspace(-1.0, 1.0, 9)
-    anger, joy = max(0.0, -mood), max(0.0, mood)
-    rise = 0.34 + 0.08 * joy - 0.08 * anger + joy * 0.07 * (1 - across**2)
-    slope = 0.2 * anger * across * side
-    brow = np.stack([x + 0.22 * radius * across, y - (rise + slope) * radius], axis=1)
-    canvas.line(brow, INK, radius * (0.06 + 0.04 * anger))
-
-
-def _mouth(canvas: Canvas, x: float, y: float, radius: float, mood: float) -> None:
-    across = np.linspace(-1.0, 1.0, 17)
-    reach = 0.42 + 0.08 * abs(mood)
-    down = (1.0 - across**2) * mood * 0.26 - mood * 0.1
-    curve = np.stack([x + across * reach * radius, y + down * radius], axis=1)
-    canvas.line(curve, INK, radius * 0.1)

@@ -42,6 +42,8 @@ class VirtualRobot:
     """
 
     def __init__(self, context: moderngl.Context, side: int) -> None:
+        self._context = context
+        self._twin: VirtualRobot | None = None
         self.side = max(16, side)
         """Width and height of its pictures [px]."""
         self._drawn_side = min(self.side, MAX_SIDE_PX)
@@ -84,8 +86,17 @@ class VirtualRobot:
             self._card = content, picture, draw()
         return self._card[2]
 
+    @property
+    def twin(self) -> "VirtualRobot":
+        """Another one, for the robot of a second player; it is closed with this one."""
+        if self._twin is None:
+            self._twin = VirtualRobot(self._context, self.side)
+        return self._twin
+
     def fit(self, side: int) -> None:
         """Give pictures of another side [px] from the next one on."""
+        if self._twin is not None:
+            self._twin.fit(side)
         if side != self.side:
             self.side, self._last = max(16, side), None
 
@@ -106,6 +117,8 @@ class VirtualRobot:
     def close(self) -> None:
         """Release the graphics buffers."""
         self._stage.release()
+        if self._twin is not None:
+            self._twin.close()
 
 
 def intensity(emotion: Emotion, action: str | None = None) -> float:

@@ -217,12 +217,17 @@ class Window(WindowSurface):
     def _cards_of(self, step: Step, robot: RobotView, size: tuple[int, int]) -> list[Card]:
         """Return the cards over a step whose picture is shown in a size [px]."""
         assert step.picture is not None
-        subjects = scaled_subjects(step, size[0] / step.picture.shape[1], self._layer.mirrored)
+        width, mirrored = step.picture.shape[1], self._layer.mirrored
+        scale, mirrored_width = size[0] / width, width if mirrored else 0
+        subjects = (scaled_rect(each, scale, mirrored_width) for each in step.subjects)
+        figures = (each and scaled_rect(each, scale, mirrored_width) for each in step.figures)
         close_up = step.close_up
-        if close_up is not None and self._layer.mirrored:
+        if close_up is not None and mirrored:
             close_up = np.ascontiguousarray(close_up[:, ::-1])
-        subjects = (*subjects, *self._panel_areas(size))
-        step = replace(step, subjects=subjects, close_up=close_up)
+        areas = self._panel_areas(size)
+        step = replace(
+            step, subjects=(*subjects, *areas), figures=tuple(figures), close_up=close_up
+        )
         self._virtual_robot.fit(virtual_robot_side(size[1]))
         return cards_over(step, robot, size, self._virtual_robot, self._layout)
 
@@ -272,15 +277,13 @@ class Window(WindowSurface):
         return [(scale * x, scale * y, scale * to_x, scale * to_y) for x, y, to_x, to_y in areas]
 
 
-def scaled_subjects(step: Step, scale: float, mirrored: bool) -> tuple[Rect, ...]:
-    """Return where subjects are in a picture that is shown larger, or as in a mirror."""
-    if not mirrored or step.picture is None:
-        return tuple(
-            (scale * left, scale * top, scale * right, scale * bottom)
-            for left, top, right, bottom in step.subjects
-        )
-    width = step.picture.shape[1]
-    return tuple(
-        (scale * (width - right), scale * top, scale * (width - left), scale * bottom)
-        for left, top, right, bottom in step.subjects
-    )
+def scaled_rect(rect: Rect, scale: float, mirrored_width: float = 0.0) -> Rect:
+    """Return a place in a picture that is shown larger, or as in a mirror if its width is given.
+
+    >>> scaled_rect((1.0, 2.0, 3.0, 4.0), 2.0), scaled_rect((1.0, 2.0, 3.0, 4.0), 2.0, 10.0)
+    ((2.0, 4.0, 6.0, 8.0), (14.0, 4.0, 18.0, 8.0))
+    """
+    left, top, right, bottom = rect
+    if mirrored_width:
+        left, right = mirrored_width - right, mirrored_width - left
+    return scale * left, scale * top, scale * right, scale * bottom

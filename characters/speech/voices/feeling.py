@@ -23,7 +23,8 @@ def manner_of(emotion: Emotion | None) -> Manner:
     if emotion is None:
         return Manner()
     place = emotion.valence, emotion.arousal
-    return Manner(*(1.0 + _dot(place, part) for part in (RATE, PITCH, RANGE)))
+    rate, pitch, spread = (1.0 + _dot(place, part) for part in (RATE, PITCH, RANGE))
+    return Manner(rate, pitch, spread)
 
 
 def _dot(place: tuple[float, float], part: tuple[float, float]) -> float:

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.choices import checked_players, robots_of
+from cubeling.app.pipeline.choices import ROBOT_NAMES, checked_players, robots_of
 from cubeling.app.pipeline.player import check_players, on_table_of
+from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
-from cubeling.app.session import SessionOptions, session_info
+from cubeling.app.session import SessionOptions, messages, session_info
+from cubeling.app.session.encoding import decode
 from cubeling.tracking import CubeModel, Frame, Intrinsics, se3
 from tests.app import session_parts
 from tests.app.scripted import Blank
@@ -22,6 +24,7 @@ CAMERA = Intrinsics(
     np.array([[450.0, 0, 319.5], [0, 450.0, 179.5], [0, 0, 1]]), np.zeros(5), (640, 360)
 )
 FRAMES = 30
+WIRES = "/robot/wire", "/robots/tim/wire"
 
 
 class TwoCubes(Blank):
@@ -61,13 +64,16 @@ def played(tmp_path_factory):
         others=("human", "vleo"),
         robot="sim:pleo",
         second_robot="sim:pleo",
+        robot_names=("robot", "tim"),
         record=path,
         pictures=False,
     )
     steps: list[Step] = []
     with open_session(options, source=TwoCubes()) as session:
         run(session, steps.append)
-        robots = session.robot.view(), session.second_robot.view()
+        first = session.robot_view()
+        assert first.second is not None
+        robots = first, first.second
     return path, steps, robots
 
 
@@ -104,6 +110,15 @@ def test_a_cube_keeps_everybody_out(played):
 def test_both_robots_feel(played):
     _, _, robots = played
     assert all(view.link == "ready" for view in robots)
+    assert [view.name for view in robots] == ["robot", "tim"]
+
+
+def test_the_wire_and_the_emotions_of_each_robot_are_recorded(played):
+    path, steps, _ = played
+    wires = [[data for _, _, data in messages(path, topic)] for topic in WIRES]
+    assert all(len(wire) > 10 for wire in wires)
+    felt = [decode(EmotionTarget, data) for _, _, data in messages(path, "/robots/tim/emotion")]
+    assert felt == [step.others[0].emotion for step in steps]
 
 
 @pytest.mark.slow(reason="a session of two cubes is processed again")
@@ -115,6 +130,7 @@ def test_a_session_of_two_players_is_replayed_with_no_difference(played):
     result = session_parts.check(path, options)
     assert result.identical
     assert result.counts["/cubes/locomotion-2/state"] == len(steps)
+    assert result.counts["/robots/tim/emotion"] == len(steps)
     with (
         pytest.raises(AppError, match="several players"),
         open_session(replace(options, stage="state", pictures=False, robot="none")),
@@ -151,7 +167,10 @@ def test_one_or_two_can_play(number):
 
 
 def test_each_player_has_one_robot():
-    assert robots_of((), 1) == ("sim", "none")
-    assert robots_of(("none", "sim:pleo"), 2) == ("none", "sim:pleo")
+    assert robots_of((), 1) == (("sim", "none"), ROBOT_NAMES)
+    assert robots_of(("none", "sim:pleo"), 2) == (("none", "sim:pleo"), ROBOT_NAMES)
+    assert robots_of(("none", "tim=sim?seed=1"), 2) == (("none", "sim?seed=1"), ("robot", "tim"))
+    with pytest.raises(AppError, match="two robots have the name 'rex'"):
+        robots_of(("rex=sim", "rex=sim"), 2)
     with pytest.raises(AppError, match="--players 2"):
         robots_of(("sim", "sim"), 1)

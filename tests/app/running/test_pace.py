@@ -146,10 +146,10 @@ def test_a_player_who_started_over_in_a_frame_that_is_not_drawn_did_so_in_it(
     cleared = []
     decide = Cast.decide
 
-    def note(self, seen, inputs):
-        if inputs.clear:
+    def note(self, seen, told):
+        if told[0].clear:
             cleared.append(seen[0].controls.timestamp)
-        return decide(self, seen, inputs)
+        return decide(self, seen, told)
 
     monkeypatch.setattr(Cast, "decide", note)
     play_slowly()

@@ -125,11 +125,13 @@ class Recorder:
         self.wires = []
 
     def wire(self, *what):
-        self.wires.append(what)
+        *bytes_and_time, topic = what
+        assert topic == "/robots/rex/wire"
+        self.wires.append(tuple(bytes_and_time))
 
 
 def test_bytes_before_the_first_frame_wait_for_it():
-    recorder, wire = Recorder(), WireTap()
+    recorder, wire = Recorder(), WireTap("/robots/rex/wire")
     wire.record_to(recorder)  # type: ignore[arg-type]  # it only calls `wire`
     wire("tx", b"a", 1.0)
     assert not recorder.wires
@@ -144,7 +146,7 @@ def test_bytes_before_the_first_frame_wait_for_it():
 
 
 def test_a_recording_that_begins_later_has_the_handshake_too():
-    recorder, wire = Recorder(), WireTap()
+    recorder, wire = Recorder(), WireTap("/robots/rex/wire")
     wire("tx", b"hello", 1.0)
     wire.align(100.0)
     wire("tx", b"not recorded", 2.0)

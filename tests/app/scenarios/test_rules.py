@@ -12,8 +12,9 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import check_actions
 from cubeling.app.running.opening import names_of_cast
-from cubeling.app.scenarios import Inputs, Situation, make_scenario
+from cubeling.app.scenarios import Inputs, ScenarioSettings, Situation, make_scenario
 from cubeling.app.scenarios.rules.file import read_rules
+from cubeling.app.scenarios.rules.scenario import rules_scenario
 from cubeling.app.scenarios.rules.vocabulary import ACTIONS, CONDITIONS, Term
 from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.lines import bundled_languages, bundled_lines
@@ -276,7 +277,7 @@ def dialogue(tmp_path):
     """Returns what a cast does, frame by frame, of which the first one has just spoken or not."""
     path = tmp_path / "dialogue.toml"
     path.write_text(DIALOGUE)
-    lead = make_scenario(str(path))
+    lead = rules_scenario(str(path))(CubeModel.load("companion"), ScenarioSettings())
     places = RootDelta(0.2, 0.0), RootDelta(0.1, -0.2)
     cast = [lead, *(lead.scenario_of(at, place) for at, place in enumerate(places, start=1))]
 
@@ -305,4 +306,5 @@ def test_home_is_where_a_character_of_the_cast_stood_first(dialogue, hand):
 
 
 def test_who_has_no_rule_watches(rules):
-    assert make_scenario(rules).scenario_of(1, RootDelta()) is None
+    lead = rules_scenario(rules)(CubeModel.load("companion"), ScenarioSettings())
+    assert lead.scenario_of(1, RootDelta()) is None

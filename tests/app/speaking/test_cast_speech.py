@@ -12,7 +12,7 @@ from cubeling.app.session import SessionFile, SessionOptions, messages, session_
 from cubeling.app.session.encoding import decode
 from cubeling.app.speaking import voices
 from cubeling.app.speaking.cast_voices import OWN_VOICES, voices_of_cast
-from cubeling.app.speaking.lines import WATCHING, bundled_lines, read_lines_for
+from cubeling.app.speaking.lines import WATCHING, ScenarioLines, bundled_lines, read_lines_for
 from cubeling.characters import CharacterCommand
 from cubeling.characters.speech import Manner
 from cubeling.characters.speech.voices import Voice, VoiceError
@@ -61,7 +61,7 @@ def test_each_says_its_own_line_on_a_channel_of_its_own(spoken):
 
 
 def test_one_speaks_at_a_time_and_its_lips_move(spoken):
-    speaking = Counter()
+    speaking: Counter[float] = Counter()
     for name in (LEAD, "human", "vleo_2"):
         for command in speeches_in(spoken, name):
             speaking[command.timestamp] += command.speaks
@@ -122,5 +122,5 @@ def test_those_who_watch_say_what_is_bundled_unless_a_file_has_their_lines(tmp_p
     assert read_lines_for(path, WATCHING, "en") == bundled_lines(WATCHING, "en")
     assert bundled_lines(WATCHING, "xx") is None
     path.write_text("[voice.en]\nidle = 'I'\n[others.en]\nidle = 'You'\n")
-    assert read_lines_for(path, WATCHING, "en").lines == {"idle": ("You",)}
-    assert read_lines_for(path, "companion", "en").lines == {"idle": ("I",)}
+    assert read_lines_for(path, WATCHING, "en") == ScenarioLines("en", {"idle": ("You",)})
+    assert read_lines_for(path, "companion", "en") == ScenarioLines("en", {"idle": ("I",)})

@@ -13,7 +13,7 @@ from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import Record, Seek
 from cubeling.app.ui.window import Window
-from cubeling.app.ui.window.window import scaled_subjects
+from cubeling.app.ui.window.window import scaled_rect
 from cubeling.tracking import open_source
 
 
@@ -39,7 +39,7 @@ def main(session: str) -> None:
             window.paint(step.picture, with_opengl=with_opengl)
             np.testing.assert_array_equal(window.pixels(), step.picture)
 
-        (mirrored, *_) = scaled_subjects(step, 2.0, mirrored=True)
+        mirrored = scaled_rect(step.subjects[0], 2.0, step.picture.shape[1])
         assert mirrored[0] == 2 * (source.size[0] - step.subjects[0][2])
         plain = pictures_of(window, step, robot)
         window.press(glfw.KEY_M)

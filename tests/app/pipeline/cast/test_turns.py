@@ -17,7 +17,7 @@ FRAME_S = 1 / 30
 
 
 def line(text, seconds=1.0):
-    return SpokenLine(Utterance(text, "en", seconds), np.zeros(1), 16000)
+    return SpokenLine(Utterance(text, "en", seconds), np.zeros(1, np.float32), 16000)
 
 
 def talk(led, wishes, seconds=8.0):
@@ -37,7 +37,7 @@ def talk(led, wishes, seconds=8.0):
         for number in turn.interrupted:
             ends[number] = -math.inf
             broken.append((now, number))
-        if turn.begins is not None:
+        if turn.begins is not None and turn.line is not None:
             begun.append((now, turn.line.utterance.text))
             ends[turn.begins] = now + turn.line.utterance.duration
         assert sum(now < end for end in ends) <= 1, "one speaks at a time"
