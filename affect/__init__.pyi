@@ -10,4 +10,8 @@ from cubeling.affect.personality_file import (
     bundled_text as bundled_text,
 )
 from cubeling.affect.regions import Region as Region, region_of as region_of
-from cubeling.affect.words import WORD_PLACES as WORD_PLACES, closest_word as closest_word
+from cubeling.affect.words import (
+    WORD_FACES as WORD_FACES,
+    WORD_PLACES as WORD_PLACES,
+    closest_word as closest_word,
+)

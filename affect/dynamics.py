@@ -1,10 +1,14 @@
 """How an emotion changes: actions and events move it, and it decays to the temperament."""
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 
 from cubeling.affect.emotion import Emotion
+from cubeling.affect.emotion_state import EmotionState
 from cubeling.affect.errors import AffectError
 from cubeling.affect.personality import Personality, check_range
+from cubeling.affect.plane_state import PlaneState
 
 TOP_SPEED = 5.0
 """AvatAR's Speed at which a character moves as fast as it can."""
@@ -16,8 +20,8 @@ MAX_TIME_STEP_S = 0.5
 class Feelings:
     """The emotional state of one character; everything that shows an emotion takes it from here.
 
-    Between two updates valence and arousal obey x′ = g·(1 + w)/2 + (home − x)·ln 2/half-life, each
-    with its own numbers, and stop at ±1. The solution is exact: the result does not depend on how
+    A personality with `emotions` has a state of 24 emotions (`EmotionState`), any other one of
+    valence and arousal (`PlaneState`). Both are solved exactly: the result does not depend on how
     often `update` is called, except for the times at which a label may change.
 
     Parameters
@@ -36,13 +40,15 @@ class Feelings:
             personality = Personality.load(personality)
         self.personality = personality
         """What sets how the emotion changes."""
-        home = personality.temperament
-        self._valence, self._arousal = home.valence, home.arousal
+        self._state: PlaneState | EmotionState = (
+            PlaneState(personality)
+            if personality.emotions is None
+            else EmotionState(personality, personality.emotions)
+        )
         self._label_set = personality.label_set
         self._next_word = self._word = self._label_set.start
         # Infinitely long ago: the dwell time never holds back the first word.
         self._word_since = -math.inf
-        self._movement = 0.0
         self._timestamp: float | None = None
 
     def update(self, action: str, weight: float, timestamp: float, speed: float = 0.0) -> Emotion:
@@ -69,21 +75,8 @@ class Feelings:
         check_range("the speed", speed, 0.0, math.inf)
         # Before anything is changed: a refused update leaves the state as it was.
         elapsed = self._time_since_update(timestamp)
-        personality, gain = self.personality, self.personality.gain(action)
-        self._movement = min(speed / TOP_SPEED, 1.0) * personality.movement
-        home = personality.temperament
-        strength = 1.0 + weight
-        rate = gain.valence * strength / 2.0
-        self._valence = _decay(
-            self._valence, home.valence, rate, personality.valence_half_life, elapsed
-        )
-        # With "magnitude" arousal is computed from valence and movement in `emotion`, and has no
-        # state.
-        if personality.arousal == "own":
-            rate, level = gain.arousal * strength / 2.0, home.arousal + self._movement
-            self._arousal = _decay(
-                self._arousal, level, rate, personality.arousal_half_life, elapsed
-            )
+        movement = min(speed / TOP_SPEED, 1.0) * self.personality.movement
+        self._state.advance(action, (1.0 + weight) / 2.0, movement, elapsed)
         self._choose_word(timestamp)
         return self.emotion
 
@@ -108,18 +101,40 @@ class Feelings:
             If the strength is out of range.
         """
         check_range(f"the strength of {event!r}", strength, 0.0, 1.0)
-        impulse = self.personality.event(event).times(strength)
-        self._valence = _clamp(self._valence + impulse.valence)
-        self._arousal = _clamp(self._arousal + impulse.arousal)
+        self._state.apply_event(event, strength)
         return event in self.personality.events
+
+    def influence(self, word: str, value: float) -> None:
+        """Feel one of the 24 emotions at once: what somebody says makes a character sad, say.
+
+        Parameters
+        ----------
+        word
+            One of the 24 emotions, "fear-confirmed".
+        value
+            How strongly, 0…1 (`a` of Egges 2006, eq. 5.10); the traits scale it. The next update
+            shows the effect.
+
+        Raises
+        ------
+        AffectError
+            If there is no such emotion, or the value is out of range.
+        """
+        check_range(f"the influence on {word!r}", value, 0.0, 1.0)
+        self._state.influence(word, value)
+
+    @property
+    def intensities(self) -> Mapping[str, float]:
+        """How strongly each of the 24 emotions is felt, 0…1.
+
+        Without a state of them: how far valence and arousal have gone towards the place of each.
+        """
+        return MappingProxyType(dict(self._state.intensities))
 
     @property
     def emotion(self) -> Emotion:
         """The emotion now; its word has hysteresis and dwell."""
-        arousal = self._arousal
-        if self.personality.arousal == "magnitude":
-            arousal = _clamp(max(abs(self._valence), self._movement))
-        return Emotion(self._valence, arousal, self._word)
+        return self._state.show(self._word)
 
     def _choose_word(self, now: float) -> None:
         """Choose the next word, and take it once the present one has lasted its dwell time."""
@@ -127,7 +142,7 @@ class Feelings:
         # the
         # dwell time it goes on moving, and the newest one is taken at its end.
         labels, personality = self._label_set, self.personality
-        self._next_word = labels.next(self._next_word, self.emotion, personality.hysteresis)
+        self._next_word = self._state.next_word(self._next_word, labels, personality.hysteresis)
         if self._next_word == self._word or now - self._word_since < personality.dwell:
             return
         # Robots have motions only from and to neutral: from happy to angry it passes the hub.
@@ -144,21 +159,3 @@ class Feelings:
             )
         self._timestamp = now
         return min(now - last, MAX_TIME_STEP_S)
-
-
-def _decay(value: float, home: float, rate: float, half_life: float, elapsed: float) -> float:
-    """Return the value after `elapsed` [s]: the exact solution, clamped to −1…1.
-
-    The solution is monotone, so clamping its end is exact too.
-    """
-    # The limit of the formula below, which would divide by a decay of zero.
-    if half_life == math.inf:
-        return _clamp(value + rate * elapsed)
-    decay = math.log(2.0) / half_life
-    # 1 − e^−x loses its digits for the small x of one frame; expm1 keeps them.
-    share = -math.expm1(-decay * elapsed)
-    return _clamp(value + (home - value) * share + rate * share / decay)
-
-
-def _clamp(value: float) -> float:
-    return min(max(value, -1.0), 1.0)

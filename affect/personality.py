@@ -8,10 +8,12 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from cubeling.affect.emotion import Emotion
+from cubeling.affect.emotion_settings import EmotionSettings
 from cubeling.affect.errors import AffectError
+from cubeling.affect.impulses import AffectImpulse
 from cubeling.affect.labels import LabelSet, label_set
 from cubeling.affect.personality_file import bundled_text, fields_of
-from cubeling.affect.traits import AffectImpulse, Ocean
+from cubeling.affect.traits import Ocean
 from cubeling.toml_file import parse, read, toml_kind
 
 MAX_GAIN_PER_S = 10.0
@@ -77,6 +79,9 @@ class Personality:
     ocean: Ocean | None = None
     """Traits; they scale every gain and event by their response (specification S17)."""
 
+    emotions: EmotionSettings | None = None
+    """How it feels 24 emotions, each with an intensity; None for valence and arousal alone."""
+
     def __post_init__(self) -> None:
         for name in ("gains", "events"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
@@ -105,18 +110,27 @@ class Personality:
         return label_set(self.labels)
 
     def gain(self, action: str) -> AffectImpulse:
-        """Return the rate of an action of full intensity [1/s]; zero for an unknown action."""
-        return self._scale(self.gains.get(action, AffectImpulse()))
+        """Return how an action of full intensity moves valence and arousal [1/s].
+
+        Zero for an unknown action.
+        """
+        return self._in_plane(self.gains.get(action, AffectImpulse()))
 
     def event(self, name: str) -> AffectImpulse:
-        """Return how far an event moves the emotion; zero for an unknown event."""
-        return self._scale(self.events.get(name, AffectImpulse()))
+        """Return how far an event moves valence and arousal; zero for an unknown event."""
+        return self._in_plane(self.events.get(name, AffectImpulse()))
 
-    def _scale(self, push: AffectImpulse) -> AffectImpulse:
+    def influence(self, word: str, value: float) -> AffectImpulse:
+        """Return how far one of the 24 emotions moves valence and arousal."""
+        return self._in_plane(AffectImpulse(emotions={word: value}))
+
+    def _in_plane(self, push: AffectImpulse) -> AffectImpulse:
+        valence, arousal = push.plane
         if self.ocean is None:
-            return push
+            return AffectImpulse(valence, arousal)
         good, bad = self.ocean.responses
-        return push.times(bad if push.valence < 0 else good)
+        factor = bad if valence < 0 else good
+        return AffectImpulse(valence * factor, arousal * factor)
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> "Personality":
@@ -173,3 +187,5 @@ def check_range(key: str, value: float, low: float, high: float) -> None:
 def _within(key: str, push: AffectImpulse, most: float) -> None:
     check_range(f"{key}.valence", push.valence, -most, most)
     check_range(f"{key}.arousal", push.arousal, -most, most)
+    for word, value in push.emotions.items():
+        check_range(f"{key}.{word}", value, 0.0, most)

@@ -6,8 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from cubeling.affect.emotion import Emotion
+from cubeling.affect.emotion_settings import read_emotion_settings
 from cubeling.affect.errors import AffectError
-from cubeling.affect.traits import AffectImpulse, Ocean
+from cubeling.affect.impulses import AffectImpulse
+from cubeling.affect.occ import OCC_PLACES
+from cubeling.affect.traits import Ocean
 from cubeling.toml_file import TomlTable
 
 BUNDLED_FOLDER = Path(__file__).parent / "personalities"
@@ -16,7 +19,7 @@ BUNDLED_FOLDER = Path(__file__).parent / "personalities"
 _AXES = ("valence", "arousal")
 _TEXT_KEYS = ("name", "description", "labels", "arousal")
 _NUMBER_FIELDS = {"hysteresis": "hysteresis", "dwell_s": "dwell"}
-_TABLE_KEYS = ("temperament", "half_life_s", "gains", "events", "movement", "ocean")
+_TABLE_KEYS = ("temperament", "half_life_s", "gains", "events", "movement", "ocean", "emotions")
 
 
 def bundled_names() -> tuple[str, ...]:
@@ -54,10 +57,15 @@ def fields_of(document: Mapping[str, Any], source: str) -> dict[str, Any]:
     for axis in half_lives.names():  # infinite: no decay; `Personality` checks the range
         fields[f"{axis}_half_life"] = half_lives.number(axis, -math.inf, math.inf)
     for key in ("gains", "events"):
-        fields[key] = {name: _impulse(push) for name, push in table.tables(key, *_AXES).items()}
+        pushes = table.tables(key, *_AXES, *OCC_PLACES)
+        fields[key] = {name: _impulse(push) for name, push in pushes.items()}
     fields["movement"] = table.table("movement", "arousal").number("arousal", default=0.0)
+    if "emotions" in table:
+        fields["emotions"] = read_emotion_settings(table.table("emotions"))
     return fields
 
 
 def _impulse(table: TomlTable) -> AffectImpulse:
-    return AffectImpulse(**{axis: table.number(axis) for axis in table.names()})
+    values = {name: table.number(name) for name in table.names()}
+    axes = {axis: values.pop(axis) for axis in _AXES if axis in values}
+    return AffectImpulse(**axes, emotions=values)

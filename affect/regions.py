@@ -89,7 +89,7 @@ def on_disc(valence: float, arousal: float) -> Emotion:
     """Return an emotion on the disc (eq. 4.1): one beyond its rim goes to the rim.
 
     >>> on_disc(3.0, 4.0)
-    Emotion(valence=0.6, arousal=0.8, word=None)
+    Emotion(valence=0.6, arousal=0.8, word=None, intensity=None)
     """
     beyond = max(1.0, math.hypot(valence, arousal))
     return Emotion(valence / beyond, arousal / beyond)

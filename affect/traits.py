@@ -1,23 +1,46 @@
-"""Impulses in the plane of valence and arousal, and the five traits that scale them."""
+"""The five traits of a personality, and what is computed of them."""
 
 from dataclasses import astuple, dataclass
+from typing import NamedTuple
 
 from cubeling.affect.emotion import Emotion
 
 
-@dataclass(frozen=True)
-class AffectImpulse:
-    """A displacement in the plane: the rate of an action [1/s], or the effect of an event."""
+class TraitRow(NamedTuple):
+    """How strongly each trait counts for one quantity."""
 
-    valence: float = 0.0
-    """Towards pleasant; negative towards unpleasant."""
+    openness: float
+    conscientiousness: float
+    extraversion: float
+    agreeableness: float
+    neuroticism: float
 
-    arousal: float = 0.0
-    """Towards excited; negative towards calm."""
+    def response(self, ocean: "Ocean") -> float:
+        """Return a row of P₀ p (eq. 5.8), 0…1.
 
-    def times(self, factor: float) -> "AffectImpulse":
-        """Return the impulse scaled by a factor."""
-        return AffectImpulse(self.valence * factor, self.arousal * factor)
+        >>> THESIS_POSITIVE_ROW.response(Ocean(0.8, 0.1, 0.7, 0.5, 0.05))  # the thesis' example
+        0.62
+        """
+        traits: tuple[float, ...] = astuple(ocean)
+        product = sum(row * trait for row, trait in zip(self, traits, strict=True))
+        return round(min(max(product, 0.0), 1.0), 9)
+
+
+THESIS_POSITIVE_ROW = TraitRow(0.15, 0.0, 0.45, 0.40, -0.30)
+"""Row of P₀ for pleasant emotions (specification S17; the thesis has no numbers)."""
+
+THESIS_NEGATIVE_ROW = TraitRow(0.10, 0.10, 0.0, 0.10, 0.70)
+"""Row of P₀ for unpleasant ones."""
+
+MEHRABIAN = (
+    TraitRow(0.0, 0.0, 0.21, 0.59, -0.19),
+    TraitRow(0.15, 0.0, 0.0, 0.30, 0.57),
+    TraitRow(0.25, 0.17, 0.60, -0.32, 0.0),
+)
+"""Pleasure, arousal and dominance of a temperament by its centred traits (Mehrabian 1996).
+
+His fourth trait is emotional stability, neuroticism turned round: hence the signs in its column.
+"""
 
 
 @dataclass(frozen=True)
@@ -41,17 +64,8 @@ class Ocean:
 
     @property
     def responses(self) -> tuple[float, float]:
-        """Strength of the response to pleasant and to unpleasant impulses, (u₊, u₋), each 0…1.
-
-        u = P₀ p (Egges, as in specification S17, which gives the rows of P₀).
-
-        >>> Ocean(0.8, 0.1, 0.7, 0.5, 0.05).responses  # the thesis' example
-        (0.62, 0.175)
-        """
-        o, c, e, a, n = astuple(self)
-        good = 0.15 * o + 0.45 * e + 0.40 * a - 0.30 * n
-        bad = 0.10 * o + 0.10 * c + 0.10 * a + 0.70 * n
-        return round(min(max(good, 0.0), 1.0), 9), round(min(max(bad, 0.0), 1.0), 9)
+        """Strength of the response to pleasant and to unpleasant impulses, (u₊, u₋), each 0…1."""
+        return THESIS_POSITIVE_ROW.response(self), THESIS_NEGATIVE_ROW.response(self)
 
     @property
     def temperament(self) -> Emotion:
@@ -59,10 +73,9 @@ class Ocean:
 
         The factor is ours: the label at rest stays "neutral".
         """
-        o, e, a = (
-            2.0 * trait - 1.0 for trait in (self.openness, self.extraversion, self.agreeableness)
+        centred = [2.0 * trait - 1.0 for trait in astuple(self)]
+        pleasure, arousal, _ = (
+            sum(share * trait for share, trait in zip(row, centred, strict=True))
+            for row in MEHRABIAN
         )
-        stable = 1.0 - 2.0 * self.neuroticism
-        pleasure = 0.21 * e + 0.59 * a + 0.19 * stable
-        arousal = 0.15 * o + 0.30 * a - 0.57 * stable
         return Emotion(pleasure / 3.0, arousal / 3.0)

@@ -161,7 +161,8 @@ def _upgrade_content(kind: type[Any], content: Any) -> Any:
     command were single fields, of which the oldest sessions lack some. A shake was a field of its
     own among the controls. All that was before sessions held the version of their format: these
     fields tell the versions apart. Before a profile had `liveliness`, a speech moved only arms and
-    head; so it does in a replay. Before there was a cast, no obstacle was alive.
+    head; so it does in a replay. Before there was a cast, no obstacle was alive. Before there were
+    24 emotions, none had an intensity.
     """
     boxes = content.get("obstacles")
     if boxes and "alive" not in boxes[0]:  # before there was a cast
@@ -175,7 +176,10 @@ def _upgrade_content(kind: type[Any], content: Any) -> Any:
         return {**controls, "gestures": ["shaken"] if content["shaken"] else []}
     if kind is EmotionTarget and "label" in content:
         emotion = {**content["emotion"], "word": content["label"]}
-        return {"emotion": emotion, "timestamp": content["timestamp"]}
+        content = {"emotion": emotion, "timestamp": content["timestamp"]}
+    emotion = content.get("emotion")
+    if isinstance(emotion, dict) and "word" in emotion and "intensity" not in emotion:
+        content = {**content, "emotion": {**emotion, "intensity": None}}
     if kind is CharacterCommand and isinstance(content.get("action"), str):
         return _upgrade_command(content)
     if kind is CharacterCommand and "behaviour" not in content:  # before hands reached

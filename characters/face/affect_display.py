@@ -3,11 +3,10 @@
 Places of words: Russell, "A circumplex model of affect", 1980; which expressions they have is ours.
 """
 
-import math
 from collections.abc import Sequence
 from operator import mul
 
-from cubeling.affect import Emotion
+from cubeling.affect import OCC_FACES, Emotion
 from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.smoothing import damped_spring, low_pass
@@ -34,30 +33,13 @@ FACE_RECIPES: dict[str, tuple[float, ...]] = {
 }  # fmt: skip
 """Weights of `EXPRESSIONS` and closure of the lids for each word, 0…1."""
 
-_SYNONYMS = {
-    "joy": "happy",
-    "gratification": "happy",
-    "anger": "angry",
-    "hate": "angry",
-    "surprise": "surprised",
-    "fear": "afraid",
-    "disgust": "disgusted",
-    "distress": "sad",
-    "pity": "sad",
-}
-FACE_RECIPES.update((word, FACE_RECIPES[synonym]) for word, synonym in _SYNONYMS.items())
+FACE_RECIPES.update((word, FACE_RECIPES[face]) for word, face in OCC_FACES.items())  # table 5.2
 
 EMOTIONAL_WORDS = frozenset(FACE_RECIPES)
 """Words with an expression of their own; an action named so shows the emotion by its clip."""
 
 NEUTRAL_SHARE = 0.6
 """Share of the expression that is shown while the word is "neutral"."""
-
-FULL_DISTANCE = 0.85
-"""Distance from the origin of the plane from which on an expression is complete."""
-
-MIN_STRENGTH = 0.4
-"""Least strength of the expression of a word: who is called angry looks angry."""
 
 FACE_LAG_S = 0.4
 """Lag with which a face follows an emotion [s]."""
@@ -88,8 +70,7 @@ def expression_weights(emotion: Emotion) -> tuple[float, ...]:
     place = emotion.valence, emotion.arousal
     recipe = FACE_RECIPES.get(emotion.word or "")
     if recipe is not None:
-        strength = min(max(math.hypot(*place) / FULL_DISTANCE, MIN_STRENGTH), 1.0)
-        return tuple(strength * part for part in recipe)
+        return tuple(emotion.strength * part for part in recipe)
     share = NEUTRAL_SHARE if emotion.word == "neutral" else 1.0
     return tuple(share * part for part in _from_place(*place))
 

@@ -8,13 +8,11 @@ of optical density (Tsumura et al. 2003), so they multiply the colour of any ski
 times are ours; of Huang 2013 this is no part.
 """
 
-import math
 from collections.abc import Mapping
 
 from cubeling.affect import Emotion
 from cubeling.affect.labels import Face
 from cubeling.affect.words import WORD_FACES, closest_word
-from cubeling.characters.face.affect_display import FULL_DISTANCE, MIN_STRENGTH
 from cubeling.characters.smoothing import low_pass
 
 BLOOD_OF_FACE: Mapping[Face, float] = {
@@ -67,8 +65,7 @@ def blood_of(emotion: Emotion | None) -> float:
         return 0.0
     word = emotion.word if emotion.word in WORD_FACES else closest_word(_PLACED, emotion)
     blood = BLOOD_OF_WORD.get(word or "", BLOOD_OF_FACE[WORD_FACES[word or "neutral"]])
-    strength = math.hypot(emotion.valence, emotion.arousal) / FULL_DISTANCE
-    return blood * min(max(strength, MIN_STRENGTH), 1.0)
+    return blood * emotion.strength
 
 
 _PLACED = ("neutral", "happy", "angry", "afraid", "sad", "surprised")

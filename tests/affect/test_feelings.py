@@ -10,8 +10,8 @@ from hypothesis import given, strategies as st
 from cubeling.affect import LABEL_SETS, Emotion, Feelings, Personality
 from cubeling.affect.dynamics import MAX_TIME_STEP_S
 from cubeling.affect.errors import AffectError
+from cubeling.affect.impulses import AffectImpulse
 from cubeling.affect.personality_file import bundled_names
-from cubeling.affect.traits import AffectImpulse
 from cubeling.affect.words import closest_word
 from tests.examples import some
 

@@ -10,7 +10,7 @@ from cubeling.affect import Feelings, Personality
 from cubeling.affect.dynamics import MAX_TIME_STEP_S
 from cubeling.affect.errors import AffectError
 from cubeling.affect.hysteresis import Label, next_label
-from cubeling.affect.traits import AffectImpulse
+from cubeling.affect.impulses import AffectImpulse
 
 FRAME_S = 1 / 30
 

@@ -8,15 +8,16 @@ from hypothesis import given, strategies as st
 
 from cubeling.affect import Emotion, Personality
 from cubeling.affect.errors import AffectError
+from cubeling.affect.impulses import AffectImpulse
 from cubeling.affect.personality_file import bundled_names, bundled_text
-from cubeling.affect.traits import AffectImpulse, Ocean
+from cubeling.affect.traits import Ocean
 
 trait = st.floats(0, 1)
 anyone = st.builds(Ocean, trait, trait, trait, trait, trait)
 
 
 def test_the_bundled_personalities():
-    assert bundled_names() == ("thesis", "calm", "grumpy", "lively", "shy")
+    assert bundled_names() == ("thesis", "calm", "grumpy", "heartfelt", "lively", "shy")
     for name in bundled_names():
         who = Personality.load(name)
         assert who.name == name
@@ -51,7 +52,7 @@ def test_what_a_file_leaves_out_is_the_default():
         ("half_life_s.valence = 0", "half_life_s.valence must be from 0.05 to inf, not 0"),
         ("half_life_s.arousal = -inf", "half_life_s.arousal must be from 0.05"),
         ("gains.kiss.valence = 99", "gains.kiss.valence must be from -10 to 10, not 99"),
-        ("gains.kiss = 0.1", "gains.kiss must be a table of valence, arousal, not 0.1"),
+        ("gains.kiss = 0.1", "gains.kiss must be a table of valence, arousal, joy, "),
         ("events.shaken.arousal = 3", "events.shaken.arousal must be from -2 to 2, not 3"),
         ("movement.arousal = 9", "movement.arousal must be from -2 to 2, not 9"),
         ("hysteresis = 0.5", "hysteresis must be from 0 to 0.25, not 0.5"),
@@ -62,6 +63,12 @@ def test_what_a_file_leaves_out_is_the_default():
         ("ocean = 3", "ocean must be a table of openness, "),
         ("labels = 3", "labels must be a text, not 3"),
         ('labels = "plutchik"', "there is no label set 'plutchik': choose one of thesis"),
+        ("gains.kiss.joy = -1", "gains.kiss.joy must be from 0 to 10, not -1"),
+        ("emotions.half = 3", "emotions.half means nothing here; there are matrix, decay, "),
+        ("emotions.rows.envy = [0, 0, 0, 0, 1]", "emotions.rows: 'envy' is not one of the 24 emo"),
+        ("emotions.rows.joy = [0, 0, 1]", "emotions.rows.joy must be a list of 5 numbers, not"),
+        ('emotions.matrix = "occ"', "emotions.matrix must be one of alma, thesis, not 'occ'"),
+        ("emotions.mood.share = 2", "emotions.mood.share must be a number from 0 to 1, not 2"),
         ('arousal = "some"', "arousal must be 'own' or 'magnitude', not 'some'"),
         ("[gains", "who.toml: "),
     ],

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 from rich.markup import escape
+from rich.table import Table
 
 from cubeling.affect import LABEL_SETS, LabelSet, Personality, bundled_names, bundled_text
 from cubeling.app.command_group import CommandGroup
@@ -125,6 +126,46 @@ def personality_(
         return
     for each in bundled_names():
         typer.echo(f"{each:8} {Personality.load(each).description}")
+
+
+@app.command()
+def emotions(
+    personality: Annotated[
+        str, typer.Argument(help="A bundled personality, or a .toml file.")
+    ] = "heartfelt",
+    robot: Annotated[
+        str, typer.Option(help="A simulated robot whose labels are shown: sim:opencat, say.")
+    ] = "sim",
+) -> None:
+    """Print what each event and action makes a personality feel, its face and a robot's label.
+
+    The last two columns are face and label without its 24 emotions: by valence and arousal alone.
+
+    Example: cubeling mood emotions heartfelt --robot sim:opencat
+    """
+    who = Personality.load(personality)
+    from cubeling.app.workshop.moods import appraise, without_emotions
+    from cubeling.robot import SteppedRobot
+
+    with SteppedRobot(robot) as stepped:
+        moods = stepped.catalogue.moods
+    rows = appraise(who, moods)
+    plain = appraise(without_emotions(who), moods)
+    table = Table(box=None, pad_edge=False)
+    for title in ("happens", "raises", "face", "robot", "without", ""):
+        table.add_column(title, no_wrap=title != "raises")
+    for row, other in zip(rows, plain, strict=True):
+        raised = " ".join(f"{word} {value:.2f}" for word, value in row.intensities)
+        strength = "" if row.face == "neutral" else f" {row.emotion.strength:.2f}"
+        cells = (row.happening, raised, f"{row.face}{strength}", row.label)
+        table.add_row(*cells, other.face, other.label)
+    console = Console(highlight=False)
+    console.print(table)
+    for name, found in (("With" if who.emotions else "As it is", rows), ("Without", plain)):
+        words = quantity(len({each.emotion.label for each in found}), "word")
+        faces = quantity(len({each.face for each in found}), "face")
+        labels = quantity(len({each.label for each in found}), "label")
+        console.print(f"{name}: {words}, {faces}, {labels} of the robot")
 
 
 def fitting_label_set(labels: tuple[str, ...]) -> LabelSet:

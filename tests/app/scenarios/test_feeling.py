@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cubeling.affect import LABEL_SETS, Emotion, Personality
-from cubeling.affect.traits import AffectImpulse
+from cubeling.affect.impulses import AffectImpulse
 from cubeling.affect.words import closest_word
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import EmotionTarget, Inputs

@@ -9,9 +9,16 @@ import sys
 import numpy as np
 import pytest
 
-from cubeling.affect import Personality
+from cubeling.affect import NEUTRAL, OCC_FACES, Personality
 from cubeling.app.errors import AppError
-from cubeling.app.workshop.moods import read_history, read_robot_traces
+from cubeling.app.workshop.moods import (
+    appraise,
+    read_history,
+    read_robot_traces,
+    without_emotions,
+)
+from cubeling.characters.face.affect_display import expression_weights
+from cubeling.robot import SteppedRobot
 from tests.app.workshop.moods.talking import words_of
 from tests.examples import some
 
@@ -56,6 +63,8 @@ def test_table_has_a_row_a_frame_and_nothing_where_nothing_is_known(
         (("plot", __file__), "is not a session"),
         (("plot", "{session}", "--personality", "rude"), "there is no personality 'rude'"),
         (("plot", "{session}", *["--personality", "shy"] * 5), "5 personalities are too many"),
+        (("emotions", "rude"), "there is no personality 'rude': choose one of thesis"),
+        (("emotions", "--robot", "sim:nobody"), "there is no simulated robot 'sim:nobody'"),
         (("personality", "rude"), "there is no personality 'rude': choose one of thesis"),
         (("plot", "{cut}"), "was cut off"),
         (("plot", "{cut}", "--salvage", "-o", "no/m.svg"), "there is no folder"),
@@ -104,3 +113,28 @@ def test_a_bundled_personality_is_printed_to_make_ones_own_from(cubeling, tmp_pa
     assert Personality.load(str(tmp_path / "my.toml")) == Personality.load("lively")
     code, out, _ = cubeling("mood", "personality")
     assert [line.split()[0] for line in out.splitlines()][:2] == ["thesis", "calm"]
+
+
+def test_24_emotions_show_more_words_faces_and_labels_than_valence_and_arousal():
+    who = Personality.load("heartfelt")
+    with SteppedRobot("sim:opencat") as robot:
+        moods = robot.catalogue.moods
+    felt, plain = appraise(who, moods), appraise(without_emotions(who), moods)
+    for row in felt:
+        loudest, intensity = row.intensities[0]
+        if row.emotion.word != "neutral":
+            assert (row.emotion.word, row.emotion.intensity) == (loudest, intensity)
+            assert row.face == OCC_FACES[loudest]
+            assert expression_weights(row.emotion) != expression_weights(NEUTRAL)
+    assert len({row.emotion.word for row in felt}) >= 12
+    assert {row.face for row in felt} > {row.face for row in plain}
+    assert {row.label for row in felt} > {row.label for row in plain}
+
+
+def test_what_emotions_a_personality_has_is_printed(cubeling):
+    code, out, _ = cubeling("mood", "emotions", "heartfelt")
+    assert code == 0
+    shaken = next(line for line in out.splitlines() if line.startswith("shaken"))
+    assert shaken.split()[1:6:2] == ["fear", "surprise", "afraid"]
+    assert "With: " in out
+    assert "Without: " in out
