@@ -108,6 +108,16 @@ class RealizedFrame:
         )
 
 
+# Functions with a name, no lambdas: a checkpoint copies the context of who speaks.
+def _say_nothing(text: str, language: str) -> None:
+    """Return no utterance: there is no voice."""
+
+
+def _assumed_walk_time(target: Array, manner: Manner) -> float:
+    """Return two seconds, wherever it goes."""
+    return 2.0
+
+
 @dataclass(eq=False)
 class RealizationContext:
     """Who plays it: the body with its abilities, its surroundings and its voice."""
@@ -120,13 +130,13 @@ class RealizationContext:
     surroundings: NamedPlaces
     """Where it is, and the places that may be named."""
 
-    utterance_of: UtteranceOf = lambda _text, _language: None
+    utterance_of: UtteranceOf = _say_nothing
     """What its voice says."""
 
     expressivity: GestureExpressivity = NEUTRAL
     """How it performs gestures unless they say it themselves."""
 
-    walk_time: Callable[[Array, Manner], float] = lambda _target, _manner: 2.0
+    walk_time: Callable[[Array, Manner], float] = _assumed_walk_time
     """Returns how long it takes to go to a place (x, z) from where it is [s]."""
 
     estimated: set[tuple[str, str]] = field(default_factory=set)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.control.layers import LIVELINESS
@@ -171,3 +172,19 @@ def test_the_slider_makes_gestures_stronger(human):
         steps = np.concatenate([turned([a], [b]) for a, b in itertools.pairwise(poses)])
         moved[emphasis] = steps.mean()
     assert moved[1.0] > 1.1 * moved[-1.0]
+
+
+def test_who_performs_a_tagged_text_goes_on_from_a_checkpoint(human):
+    said = replace(SAID, gestures=(GestureSpan("SHRUG", 0.3, 1.5),))
+    animator = Animator(human, place=RootDelta(), seed=SEED)
+
+    def play(body, first, last):
+        commands = (
+            CharacterCommand(n / RATE, speech=SpeechIntent(said, 0.0)) for n in range(first, last)
+        )
+        return [body.update(command).pose.rotations for command in commands]
+
+    play(animator, 0, 20)
+    copy = Checkpoint({"animator": animator})
+    one, other = play(animator, 20, 30), play(copy.content()["animator"], 20, 30)
+    assert np.array_equal(one, other)
