@@ -35,6 +35,10 @@ REFERENCE_RATE = 60.0
 SETTLING_STEPS = 60
 """Steps before the first frame, so that gravity does not make hair fall when it appears."""
 
+NEGLIGIBLE_STEP = 1e-6
+"""A step that is shorter [1 / REFERENCE_RATE] is no time, but rounding of two equal timestamps: as
+a divisor it would turn the rounding of places into a kick."""
+
 MAX_TAIL_SPEED = 25.0
 """Speed of a tail in the pose [m/s] above which its chain is carried along instead of swinging: a
 character of `REFERENCE_HEIGHT_M` was put elsewhere. A running person whips its hair around at less
@@ -159,7 +163,7 @@ class SpringBody:
             # Verlet has no speed but the last way, which belongs to the length of its own step.
             drift *= length / self._step
         # A frame without time must not forget the speed.
-        if length > 0.0:
+        if length > NEGLIGIBLE_STEP:
             self._before, self._step = self._now, length
         drift *= kept
         drift += self._now

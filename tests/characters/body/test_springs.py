@@ -163,6 +163,20 @@ def test_the_same_frames_give_the_same_bytes():
     assert swung(30).tobytes() == swung(30).tobytes()
 
 
+def test_two_frames_at_one_time_but_for_rounding_are_one():
+    skeleton, bones = free_hair()
+    shown = []
+    for rounding in (0.0, 4e-16):
+        body = SpringBody(skeleton, bones)
+        for frame in range(20):
+            pose, world = walking(skeleton, frame)
+            body.update(pose, world, frame and 1 / 60)
+        body.update(pose, world, rounding)
+        pose, world = walking(skeleton, 20)
+        shown.append(body.update(pose, world, 1 / 60).rotations)
+    assert angles(*shown).max() < 1e-6
+
+
 def test_a_saved_state_goes_on_with_the_same_bytes():
     skeleton, bones = head_with_hair()
     body = SpringBody(skeleton, bones)
