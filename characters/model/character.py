@@ -278,7 +278,8 @@ def _with_sidecar(character: Character, path: Path) -> Character:
     recordings = recordings_beside(path, found.skeleton)
     if not recordings:
         return found
-    standing = standing_factory(found.skeleton, found.anatomy, found.clips, recordings)
+    parts = found.skeleton, found.anatomy, found.clips
+    standing = standing_factory(*parts, recordings, pauses=sidecar.pauses)
     return replace(found, standing=standing)
 
 

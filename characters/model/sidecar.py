@@ -11,6 +11,7 @@ from cubeling.characters.model.springs import SpringGroup, read_spring_groups
 from cubeling.characters.motion.trees.plan import Plan
 from cubeling.characters.motion.trees.reading import PLAN_TABLES, read_plan
 from cubeling.characters.skeleton.anatomy import BODY_PARTS
+from cubeling.characters.synthesis.idle.pauses import PauseLaw
 from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, read, toml_kind
 
 SIDECAR_FILE = toml_kind(
@@ -23,7 +24,7 @@ SIDECAR_FILE = toml_kind(
 
 _MAX_ENTRIES = 1000  # a character has hundreds of joints
 
-_TABLES = ("joints", "body", "springs", "face", *PLAN_TABLES)
+_TABLES = ("joints", "body", "springs", "face", "idle", *PLAN_TABLES)
 
 BODY_LAYERS = ("dependent_joints", "self_collision")
 """Layers that the table [body] switches on; `cubeling.characters.control.layers` makes them."""
@@ -48,6 +49,9 @@ class Sidecar:
     face: FaceTable | None = None
     """Wrinkles and blood of its face."""
 
+    pauses: PauseLaw | None = None
+    """How what it feels shortens its pauses between balance shifts; None as in the thesis."""
+
 
 def read_sidecar(path: Path, clips: Collection[str] = ()) -> Sidecar:
     """Return what the file of a character says; one that does not exist is empty.
@@ -64,4 +68,5 @@ def read_sidecar(path: Path, clips: Collection[str] = ()) -> Sidecar:
         tuple(name for name in BODY_LAYERS if body.truth(name, False)),
         read_spring_groups(file),
         read_face_table(file, path.parent),
+        file.table("idle").fill(PauseLaw) if "idle" in file else None,
     )

@@ -15,6 +15,7 @@ from cubeling.files import is_there
 
 # Few characters stand as recorded: what that takes is loaded for those.
 if TYPE_CHECKING:
+    from cubeling.characters.synthesis.idle.pauses import PauseLaw
     from cubeling.characters.synthesis.idle.recordings import StandingRecording
 
 StandingFactory = Callable[[int], StandingMotion]
@@ -33,14 +34,16 @@ def standing_factory(
     recordings: "tuple[StandingRecording, ...]",
     *,
     acting: bool = True,
+    pauses: "PauseLaw | None" = None,
 ) -> StandingFactory:
     """Return what makes the idle motion of a person in recordings on a skeleton.
 
     The first of its idle clips shows how it holds what posture vectors leave out,
-    such as its fingers. All these clips are its acts, if it is `acting`.
+    such as its fingers. All these clips are its acts, if it is `acting`. Its pauses are those of
+    the thesis, unless others are given.
     """
     from cubeling.characters.synthesis.idle.database import IdleDatabase
-    from cubeling.characters.synthesis.idle.idle_motion import IdleMotion
+    from cubeling.characters.synthesis.idle.idle_motion import USUAL_PAUSES, IdleMotion
     from cubeling.characters.synthesis.idle.posture_space import PostureVectors
     from cubeling.characters.synthesis.idle.standing import PlantedPaws, StandingPerson
 
@@ -53,8 +56,9 @@ def standing_factory(
         kind = PostureVectors.of(skeleton, anatomy)
         return IdleDatabase.of(recordings, replace(kind, others=held))
 
+    law = pauses or USUAL_PAUSES
     return lambda seed: StandingPerson(
-        IdleMotion(database(), seed), acts if acting else (), seed, paws
+        IdleMotion(database(), seed, pauses=law), acts if acting else (), seed, paws
     )
 
 

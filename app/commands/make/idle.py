@@ -59,13 +59,14 @@ def learn(
 
     Rests, balance shifts and small variations are found without marks, in the parts between two
     steps; of somebody who sits, in how the trunk leans. A recording with the word
-    of an emotion before it, such as happy=FILE, plays while the character feels so.
+    of an emotion before it, such as happy=FILE, plays while the character feels so; the last
+    shift of happy>sad=FILE plays as it turns from happy to sad.
 
     Example: cubeling idle learn anna.bvh -o anna.idle
     """
     target = chosen_output(output, "my.idle", "idle motion", (".idle",), overwrite)
     felt = [_split_emotion(each) for each in recordings]
-    check_motions(name for name, _ in felt)
+    check_motions(name for name, *_ in felt)
     check_character(character)
     from cubeling.characters import Character, read_motions
     from cubeling.characters.model import with_root_joint
@@ -85,9 +86,9 @@ def learn(
     with console.status("reading"):
         found = tuple(
             part
-            for name, feeling in felt
+            for name, feeling, before in felt
             for clip in read_motions([name], body)
-            for part in read_parts(clip, body.skeleton, body.anatomy, feeling, align)
+            for part in read_parts(clip, body.skeleton, body.anatomy, feeling, align, before)
         )
     if lender is not None:
         if skeleton_identity(lender[0]) != skeleton_identity(body.skeleton):
@@ -155,10 +156,13 @@ def _file(person: Path) -> Path:
     return Path(str(resources.files("cubeling.characters") / "assets" / f"{person}.idle"))
 
 
-def _split_emotion(recording: str) -> tuple[str, Region | None]:
-    """Return the file of a recording, and the emotions that it shows."""
-    word, equals, name = recording.partition("=")
-    return (name, region_of(word)) if equals and word.isalpha() else (recording, None)
+def _split_emotion(recording: str) -> tuple[str, Region | None, Region | None]:
+    """Return the file of a recording, the emotions that it shows, and those that it leaves."""
+    words, equals, name = recording.partition("=")
+    before, becomes, word = words.rpartition(">")
+    if not equals or not words.replace(">", "", 1).isalpha():
+        return recording, None, None
+    return name, region_of(word), region_of(before) if becomes else None
 
 
 def describe(console: Console, person: Person, database: IdleDatabase, mood: str = "") -> None:

@@ -31,7 +31,9 @@ def standing_as(character: Character, path: Path) -> Character:
                 for each in as_clips(person)
             ]
             recordings = tuple(
-                read_standing(clip, character.skeleton, parts, old.feeling)
+                replace(
+                    read_standing(clip, character.skeleton, parts, old.feeling), before=old.before
+                )
                 for clip, old in zip(clips, recordings, strict=True)
             )
         except CharacterError as error:

@@ -41,6 +41,9 @@ class BalanceShift:
     """Number of the resting posture that it left in the recording, for that with the next number;
     −1 if it was not recorded between two rests."""
 
+    before: Region | None = None
+    """The emotions that it leaves, where they are others than it leads to."""
+
 
 @dataclass(frozen=True, eq=False)
 class RestingPosture:
@@ -111,12 +114,16 @@ class IdleDatabase:
             for a, b in each.shifts:
                 way = each.vectors[a.end - 1 : b.first + 1]
                 leaves = len(postures) + each.rests.index(a)
-                shifts.append(BalanceShift(way, a.balance, b.balance, each.feeling, leaves))
+                turns = b is each.rests[-1]  # from the emotion at its begin to that at its end
+                before = each.before if turns else None
+                feeling = each.feeling if turns else each.before or each.feeling
+                shifts.append(BalanceShift(way, a.balance, b.balance, feeling, leaves, before))
             for rest in each.rests:
                 frames = each.vectors[rest.first : rest.end]
                 lasted = (rest.end - rest.first) / rate
                 cut = rest in (each.rests[0], each.rests[-1])
-                own = rest.balance, lasted, cut, each.feeling, len(postures)
+                feeling = each.feeling if rest is each.rests[-1] else each.before or each.feeling
+                own = rest.balance, lasted, cut, feeling, len(postures)
                 postures.append(RestingPosture(frames.mean(0), *own, frames))
         return IdleDatabase(kind, rate, space, tuple(postures), tuple(shifts))
 
@@ -194,6 +201,15 @@ class IdleDatabase:
     def without_shift(self, number: int) -> "IdleDatabase":
         """Return it without one of its shifts."""
         return replace(self, shifts=self.shifts[:number] + self.shifts[number + 1 :])
+
+
+def shifts_from(shifts: Sequence[BalanceShift], feeling: Region | None) -> list[BalanceShift]:
+    """Return the shifts that were recorded as one emotion became another, if this one was left.
+
+    Else those that need no such change; if there are none, all.
+    """
+    turning = [each for each in shifts if each.before is not None and each.before == feeling]
+    return turning or [each for each in shifts if each.before is None] or list(shifts)
 
 
 def _items_for(items: tuple[_Felt, ...], regions: Sequence[Region]) -> tuple[_Felt, ...]:

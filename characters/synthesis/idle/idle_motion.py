@@ -19,8 +19,13 @@ from cubeling.characters.synthesis.idle.bridges import (
     hurry,
     nearest_balance,
 )
-from cubeling.characters.synthesis.idle.database import IdleDatabase, RestingPosture
+from cubeling.characters.synthesis.idle.database import (
+    IdleDatabase,
+    RestingPosture,
+    shifts_from,
+)
 from cubeling.characters.synthesis.idle.motion_texture import StretchStream
+from cubeling.characters.synthesis.idle.pauses import PauseLaw
 from cubeling.characters.synthesis.idle.variations import VariationStream
 
 Small = Literal["recorded", "extrema"]
@@ -34,6 +39,9 @@ REGION_MARGIN = 0.1
 
 FOLLOWED = 0.8
 """How often it goes on from a rest as she did: people shift in bursts, with long rests between."""
+
+USUAL_PAUSES = PauseLaw()
+"""α = β = 1, as in the thesis."""
 
 RAMP_S = 0.4
 """How long small variations take to come and go [s]."""
@@ -50,7 +58,15 @@ class IdleMotion:
     it is.
     """
 
-    def __init__(self, database: IdleDatabase, seed: int = 0, small: Small = "recorded") -> None:
+    def __init__(
+        self,
+        database: IdleDatabase,
+        seed: int = 0,
+        small: Small = "recorded",
+        pauses: PauseLaw = USUAL_PAUSES,
+    ) -> None:
+        self.pauses = pauses
+        """How activation shortens her pauses; may be changed while it plays."""
         self._rng = np.random.default_rng(seed)
         self._emotion = NEUTRAL
         self._database = database
@@ -211,7 +227,7 @@ class IdleMotion:
         return self._lively
 
     def pause(self, posture: RestingPosture, chance: float) -> float:
-        """Return how long to rest [s]: p_m + (1 − activation) · (d − p_m), d of her own rests.
+        """Return how long to rest [s]: p_m + (α − activation) β (d − p_m), d of her own rests.
 
         Equation 4.2 has chance · p_o for d − p_m; but people rest long or shortly, and seldom in
         between. A chance, 0…1, is the share of her rests on this balance that are shorter.
@@ -221,7 +237,7 @@ class IdleMotion:
         dwell = float(dwells[min(int(chance * len(dwells)), len(dwells) - 1)])
         # Nobody is active for less time than her rests that were not cut.
         shortest = min(database.pause_limits(posture.balance)[0], dwell)
-        return shortest + (1.0 - self._emotion.arousal) * (dwell - shortest)
+        return self.pauses.length(shortest, dwell - shortest, self._emotion.arousal)
 
     def _share(self, posture: RestingPosture) -> float:
         """Return the chance of the pause that was recorded in a posture; any, if none was."""
@@ -252,6 +268,7 @@ class IdleMotion:
         balance = names[int(self._rng.choice(len(names), p=odds / odds.sum()))]
         end = self._draw(database.by_balance.get(balance) or database.postures)
         fitting = [each for each in shifts if each.end == balance]
+        fitting = shifts_from(fitting, posture.feeling)
         return end, fitted_shift(database, fitting, posture.vector, end.vector)
 
     def _draw(self, postures: tuple[RestingPosture, ...]) -> RestingPosture:

@@ -82,6 +82,9 @@ class StandingRecording:
     feeling: Region | None = None
     """The emotions that it shows; None if it suits any."""
 
+    before: Region | None = None
+    """The emotions that it shows before its last shift, where that leads from them to others."""
+
     @property
     def shifts(self) -> tuple[tuple[RestSpan, RestSpan], ...]:
         """The pairs of rests between which the balance shifts."""
@@ -94,10 +97,12 @@ def read_parts(
     anatomy: Anatomy,
     feeling: Region | None = None,
     alignment: Alignment = "feet",
+    before: Region | None = None,
 ) -> tuple[StandingRecording, ...]:
     """Return the parts of a clip in which a person stays where she is; see `read_standing`.
 
-    A clip without steps is one part. Parts of less than `MIN_PART_S` are left out.
+    A clip without steps is one part. Parts of less than `MIN_PART_S` are left out. The last shift
+    of the last one leads from the emotions `before` to those of `feeling`, if both are given.
     """
     feet = find_feet(skeleton)
     placed = clip.poses.globals(skeleton)[..., :3, 3]
@@ -116,11 +121,14 @@ def read_parts(
         if count >= MIN_PART_S * clip.rate
     ]
     if stays.all() or not parts:  # what is wrong with the whole clip is said of it
-        return (read_standing(clip, skeleton, anatomy, feeling, alignment),)
-    return tuple(
+        parts = [slice(None)]
+    found = [
         read_standing(replace(clip, poses=clip.poses[part]), skeleton, anatomy, feeling, alignment)
         for part in parts
-    )
+    ]
+    if before is None:
+        return tuple(found)
+    return (*(replace(e, feeling=before) for e in found[:-1]), replace(found[-1], before=before))
 
 
 def read_standing(

@@ -48,7 +48,7 @@ def save_person(person: Person, path: Path) -> None:
     skeleton, anatomy, recordings = person
     content, arrays = map(dict, skeleton_content(skeleton, anatomy))
     content["recordings"] = [
-        [each.name, each.rate, *([_write_region(each.feeling)] if each.feeling else [])]
+        [each.name, each.rate, *(_write_region(end) for end in (each.feeling, each.before) if end)]
         for each in recordings
     ]
     for number, each in enumerate(recordings):
@@ -117,7 +117,7 @@ def _recording(
     found = tuple(
         RestSpan(int(first), int(end), BALANCES[side]) for first, end, side in rests.tolist()
     )
-    return StandingRecording(name, rate, vectors, balance, found, *feelings[:1])
+    return StandingRecording(name, rate, vectors, balance, found, *feelings[:2])
 
 
 def as_clips(person: Person) -> list[Clip]:

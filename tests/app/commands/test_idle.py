@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
+from cubeling.affect import region_of
 from cubeling.characters import Animator, Character, CharacterCommand, Clip, Pose
 from cubeling.characters.control.controllers.idle import standing_as
 from cubeling.characters.retargeting.leg_ik import place_ankle
@@ -59,6 +60,15 @@ def test_a_person_comes_back_from_her_file(anna: Path) -> None:
     assert len(skeleton) == len(Character.load("human").skeleton)
     assert (recording.name, recording.rate, len(recording.vectors)) == ("anna", RATE, 750)
     assert {rest.balance for rest in recording.rests} == {"left", "right"}
+
+
+def test_the_emotions_at_both_ends_come_back_from_her_file(anna: Path, tmp_path: Path) -> None:
+    *body, (recording,) = load_person(anna)
+    turning = replace(recording, feeling=region_of("sad"), before=region_of("happy"))
+    save_person((*body, (turning, recording)), tmp_path / "turning.idle")
+    one, other = load_person(tmp_path / "turning.idle")[2]
+    assert (one.before, one.feeling) == (turning.before, turning.feeling)
+    assert (other.before, other.feeling) == (None, None)
 
 
 def test_shows_rests_pauses_and_shifts(cubeling, anna) -> None:

@@ -25,6 +25,7 @@ from cubeling.characters.skeleton import rotations
 from cubeling.characters.synthesis.idle.bridges import fit, nearest_clip
 from cubeling.characters.synthesis.idle.database import IdleDatabase
 from cubeling.characters.synthesis.idle.idle_motion import REACTION_S, IdleMotion
+from cubeling.characters.synthesis.idle.pauses import PauseLaw
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
 from cubeling.characters.synthesis.idle.recordings import (
     RestSpan,
@@ -438,3 +439,68 @@ def test_a_real_person_shifts_her_balance(
     assert np.ptp(feet[..., [0, 2]], axis=0).max() < 0.1  # they stay, while the hips go
     hips = again[:, human.anatomy.joints["hips"]]
     assert np.ptp(hips[:, 0]) > 0.12
+
+
+@pytest.mark.parametrize(
+    ("law", "activation", "share"),
+    [
+        (PauseLaw(), 1.0, 0.0),
+        (PauseLaw(), 0.0, 1.0),
+        (PauseLaw(), -1.0, 2.0),
+        (PauseLaw(alpha=2.0), 1.0, 1.0),
+        (PauseLaw(beta=0.5), -1.0, 1.0),
+        (PauseLaw(beta=0.0), -1.0, 0.0),
+    ],
+)
+def test_alpha_and_beta_set_how_activation_shortens_pauses(
+    database: IdleDatabase, law: PauseLaw, activation: float, share: float
+) -> None:
+    """Equation 4.2 of Egges 2006, with her own rests for p_o."""
+    motion = IdleMotion(database, pauses=law)
+    motion.feel(Emotion(0.0, activation))
+    posture = database.postures[0]
+    least = database.pause_limits(posture.balance)[0]
+    for chance in (0.1, 0.5, 0.9):
+        dwells = database.dwells[posture.balance]
+        dwell = float(dwells[int(chance * len(dwells))])
+        expected = min(least, dwell) + share * (dwell - min(least, dwell))
+        assert motion.pause(posture, chance) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("alpha", "beta"), [(0.5, 1.0), (1.0, -0.1), (float("nan"), 1.0)])
+def test_a_pause_law_out_of_range_is_refused(alpha: float, beta: float) -> None:
+    with pytest.raises(CharacterError, match=r"alpha .* is to be 1 to 10, and beta"):
+        PauseLaw(alpha, beta)
+
+
+def test_as_one_emotion_becomes_another_the_shift_between_them_plays(
+    database: IdleDatabase,
+) -> None:
+    """A recording that begins happy and ends sad: its last shift leads from one to the other."""
+    happy, sad = region_of("happy"), region_of("sad")
+    still = np.repeat(database.postures[0].vector[None], 300, axis=0)
+    ways = {}
+    for name, lift in (("turning", 0.3), ("sad", -0.3)):
+        vectors = still.copy()
+        vectors[100:150] += lift * np.sin(np.linspace(0.0, np.pi, 50))[:, None]
+        rests = (RestSpan(0, 100, "left"), RestSpan(150, 300, "right"))
+        before = happy if name == "turning" else None
+        zeros = np.zeros(300)
+        ways[name] = StandingRecording(name, RATE, vectors, zeros, rests, sad, before)
+    turned = (RestSpan(0, 100, "right"), RestSpan(150, 300, "left"))
+    back = replace(ways["sad"], name="back", rests=turned)
+    known = IdleDatabase.of((ways["turning"], ways["sad"], back), database.kind)
+    turning = [shift for shift in known.shifts if shift.before == happy]
+    assert [(s.feeling, s.start, s.end) for s in turning] == [(sad, "left", "right")]
+    motion = IdleMotion(known, 1)
+    motion.feel(Emotion(0.5, 0.6))
+    rows = [motion.next_posture() for _ in range(50)]
+    motion.feel(Emotion(-0.6, -0.5))
+    rows += [motion.next_posture() for _ in range(2000)]
+    base = still[0]
+    highest = np.array([(row - base).max() for row in rows])
+    raised = np.flatnonzero(highest > 0.2)
+    assert 50 < raised[0] < 50 + (REACTION_S + 2.0) * RATE
+    # Once: sad as she is then, she shifts as sad people do.
+    assert raised[-1] - raised[0] < 60
+    assert any((row - base).min() < -0.2 for row in rows)
