@@ -43,6 +43,7 @@ from cubeling.tracking.sources.mcap_camera import (
     LENS_RECORD as LENS_RECORD,
 )
 from cubeling.tracking.tracker.frame_markers import FrameMarkers as FrameMarkers
+from cubeling.tracking.tracker.learned_camera import LearnedCamera as LearnedCamera
 from cubeling.tracking.tracker.print_check import (
     PrintCheck as PrintCheck,
     PrintFault as PrintFault,

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.cast.further_members import distinct_names
 from cubeling.app.pipeline.step import PlayerStep
 from cubeling.app.pipeline.table.obstacles import Obstacles
 from cubeling.app.pipeline.tracked_cube import TrackedCube
@@ -17,6 +18,7 @@ from cubeling.tracking import (
     Frame,
     FrameMarkers,
     Intrinsics,
+    LearnedCamera,
 )
 
 
@@ -29,7 +31,7 @@ class CubePlayer:
         Its name among the players.
     robot
         The name of its robot.
-    cube, intrinsics, known_cubes
+    cube, camera, known_cubes
         See `TrackedCube`.
     """
 
@@ -38,11 +40,11 @@ class CubePlayer:
         name: str,
         robot: str,
         cube: CubeModel,
-        intrinsics: Intrinsics,
+        camera: LearnedCamera,
         known_cubes: Sequence[CubeModel],
     ) -> None:
         self.name, self.robot, self.cube = name, robot, cube
-        self.tracked = TrackedCube(cube, intrinsics, known_cubes)
+        self.tracked = TrackedCube(cube, camera, known_cubes)
         """The cube in view, and what it has told of the camera."""
         self.obstacles = Obstacles(cube.edge)
         """What is in the way of the characters."""
@@ -57,6 +59,21 @@ class CubePlayer:
         state = self.tracked.track(frame, markers)
         controls = on_table_of(first, self.gesture(state))
         return PlayerStep(self.name, state, controls, self.cube.edge, self.robot)
+
+
+def make_players(
+    cubes: Sequence[CubeModel],
+    robots: Sequence[str],
+    intrinsics: Intrinsics,
+    known_cubes: Sequence[CubeModel],
+) -> tuple[CubePlayer, ...]:
+    """Return a player for each cube, named after it; all look through one camera."""
+    camera = LearnedCamera(intrinsics)
+    names = distinct_names(each.name for each in cubes)
+    return tuple(
+        CubePlayer(name, robot, cube, camera, known_cubes)
+        for name, robot, cube in zip(names, robots, cubes, strict=False)
+    )
 
 
 def on_table_of(first: CubeControls, controls: CubeControls) -> CubeControls:

@@ -17,7 +17,7 @@ from cubeling.app.pipeline.choices import REALISM_CHOICES, ROBOT_NAMES, distinct
 from cubeling.app.pipeline.cube_window import CubeWindow
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.picture_regions import picture_regions
-from cubeling.app.pipeline.player import CubePlayer, check_players
+from cubeling.app.pipeline.player import check_players, make_players
 from cubeling.app.pipeline.registry import make_scenario
 from cubeling.app.pipeline.scenario import (
     AdjustableScenario,
@@ -164,12 +164,7 @@ class Playground:
         lead = CastMember(name, character, scenario, attention, controller=self._controller)
         self.cast = Cast([lead, *further_members(names, self._others, scenario, led, look, edges)])
         """Who is on the table: first the character that the first cube leads."""
-        self.players = tuple(
-            CubePlayer(name, robot, each, self.intrinsics, self.known_cubes)
-            for name, robot, each in zip(
-                distinct_names(e.name for e in cubes), self._robots, cubes, strict=False
-            )
-        )
+        self.players = make_players(cubes, self._robots, self.intrinsics, self.known_cubes)
         """Who plays, each with a cube."""
         self._detectors = {each.dictionary: MarkerDetector(each.dictionary) for each in cubes}
         self.sight.begin(cube)

@@ -12,6 +12,7 @@ from cubeling.tracking import (
     Frame,
     FrameMarkers,
     Intrinsics,
+    LearnedCamera,
     LensEstimate,
     TrackingError,
 )
@@ -27,17 +28,17 @@ class TrackedCube:
     ----------
     cube
         The cube, as its file says.
-    intrinsics
-        Of the camera.
+    camera
+        Which all cubes in play share.
     known_cubes
         The player's other cubes.
     """
 
     def __init__(
-        self, cube: CubeModel, intrinsics: Intrinsics, known_cubes: Sequence[CubeModel]
+        self, cube: CubeModel, camera: LearnedCamera, known_cubes: Sequence[CubeModel]
     ) -> None:
-        self._tracker = CubeTracker(cube, intrinsics)
-        self._advice = CubeAdvice(cube, intrinsics, known_cubes)
+        self._tracker = CubeTracker(cube, camera.intrinsics, camera)
+        self._advice = CubeAdvice(cube, camera.intrinsics, known_cubes)
         self.error = ""
         """What the tracker's code raised in the last frame; "" for nothing."""
 

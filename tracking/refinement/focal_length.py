@@ -114,6 +114,11 @@ class _Views:
         all_of_them = (self.poses, self.blooms, self.pixels, self.inward, self.errors)
         return _Views(*(np.delete(each, numbers, axis=0) for each in all_of_them))
 
+    def least_depth(self, corners: Array) -> float:
+        """Return the least depth of the corners of the cube, (F, 4, 3), in any of them [m]."""
+        depths = (self.poses[:, 2:3, :3] @ corners.reshape(-1, 3).T)[:, 0]
+        return float((depths + self.poses[:, 2, 3:]).min())
+
     def move(self, changes: Array) -> "_Views":
         """Return the views with poses and blooms that differ by (V, 7)."""
         poses = [
@@ -123,26 +128,62 @@ class _Views:
         return replace(self, poses=np.stack(poses), blooms=self.blooms + changes[:, 6])
 
 
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """One of the cubes."""
+
+    numbers: dict[str, int]
+    """Number of each face by its name."""
+
+    corners: Array
+    """Corners of its markers where they should be, (F, 4, 3) [m]."""
+
+    unknowns: Indices
+    """Which of the shared unknowns bear on its pictures, (4 + 12 F,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Equations:
+    """Those of the pictures of one cube, without what is of one picture alone."""
+
+    information: Array
+    """Of the K unknowns that bear on the cube, (K, K)."""
+
+    score: Array
+    """Their right side, (K,)."""
+
+    solved: Array
+    """How a picture's own unknowns follow those, and what they are without them, (V, 7, K + 1)."""
+
+    residual: Array
+    """Residuals [px], (V, 8 F)."""
+
+    weights: Array
+    """Their weights, (V, 8 F)."""
+
+    def own_changes(self, step: Array) -> Array:
+        """Return how the own unknowns of each change, (V, 7), by a step of the others, (K,)."""
+        return np.asarray(self.solved[..., -1] - self.solved[..., :-1] @ step, np.float64)
+
+
 class FocalLengthEstimator:
-    """Collects what the faces of one cube say of the focal length of one camera.
+    """Collects what the faces of cubes say of the focal length of one camera.
 
     Parameters
     ----------
-    cube
-        The cube, as printed.
+    cubes
+        The cubes, as printed; each picture that is learned from shows one of them.
     intrinsics
         The camera, whose `focal_deviation` is the doubt before anything is measured.
     """
 
-    def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
-        self._numbers = {face.name: number for number, face in enumerate(cube.faces)}
-        self._corners = np.stack([face.corners for face in cube.faces])
+    def __init__(self, cubes: Sequence[CubeModel], intrinsics: Intrinsics) -> None:
         self._matrix, self._distortion = intrinsics.matrix, intrinsics.distortion
         assert intrinsics.focal_deviation is not None, "a stated focal length is not measured"
         centre = [max(intrinsics.centre_deviation, 1.0)] * 2
         blocks = [
             np.diag(1 / np.square([intrinsics.focal_deviation, K1_SPREAD, *centre])),
-            *(np.linalg.inv(_shape_covariance(face)) for face in cube.faces),
+            *(np.linalg.inv(_shape_covariance(face)) for cube in cubes for face in cube.faces),
         ]
         self._prior = np.zeros((sum(map(len, blocks)),) * 2)
         start = 0
@@ -152,36 +193,50 @@ class FocalLengthEstimator:
             start = end
         self._shared = np.zeros(len(self._prior))
         """Logarithm of the scale, k1, how far the principal point is from where it is said to be
-        [px], and each corner from its place [m], (4 + 12 F,)."""
-        self._views = _Views.none(len(cube.faces))
+        [px], and each corner from its place [m], (4 + 12 F,) with the faces F of all cubes."""
+        ends = np.cumsum([4, *(12 * len(cube.faces) for cube in cubes)])
+        self._bodies = tuple(
+            _Body(
+                {face.name: number for number, face in enumerate(cube.faces)},
+                np.stack([face.corners for face in cube.faces]),
+                np.append(np.arange(4), np.arange(start, end)),
+            )
+            for cube, start, end in zip(cubes, ends[:-1], ends[1:], strict=True)
+        )
+        self._views = tuple(_Views.none(len(cube.faces)) for cube in cubes)
         self.estimate = FocalLength(1.0, intrinsics.focal_deviation)
         """The best estimate."""
 
     @property
     def done(self) -> bool:
         """Whether nothing more is learned."""
-        return self.estimate.known or len(self._views.poses) >= MAX_VIEWS
+        return self.estimate.known or sum(len(each.poses) for each in self._views) >= MAX_VIEWS
 
-    def learn(self, faces: Sequence[FaceCorners]) -> None:
-        """Learn from the faces of one picture, each at most once, if they show anything new."""
+    def learn(self, faces: Sequence[FaceCorners], cube: int = 0) -> None:
+        """Learn from the faces of a cube in one picture, if they show anything new.
+
+        `cube` is its number; each face is given at most once.
+        """
         large = [each for each in faces if each.width > MIN_FACE_PX]
         if self.done or len(large) < 2:
             return
-        pose = self._pose(large)
-        if pose is None or not self.wants(pose, max(each.error_px for each in large)):
+        body, views = self._bodies[cube], list(self._views)
+        pose = self._pose(large, body)
+        if pose is None or not self.wants(pose, max(each.error_px for each in large), cube):
             return
         # What was detected before the lens was known is replaced by what edges show more exactly.
-        views = self._views.without(self._near(pose))
-        seen = [(self._numbers[each.face], each) for each in large]
-        self._solve(views.add(pose, seen))
+        seen = [(body.numbers[each.face], each) for each in large]
+        views[cube] = views[cube].without(self._near(pose, cube)).add(pose, seen)
+        self._solve(views, cube)
 
-    def wants(self, camera_from_cube: Array, error_px: float) -> bool:
-        """Whether a picture of the cube at a pose, (4, 4), can tell anything new.
+    def wants(self, camera_from_cube: Array, error_px: float, cube: int = 0) -> bool:
+        """Whether a picture of a cube at a pose, (4, 4), can tell anything new.
 
         `error_px` is the error of its corners.
         """
-        near = self._near(camera_from_cube)
-        return not len(near) or bool((self._views.worst[near] > MIN_BETTER * error_px).all())
+        near = self._near(camera_from_cube, cube)
+        worst = self._views[cube].worst[near]
+        return not len(near) or bool((worst > MIN_BETTER * error_px).all())
 
     def _camera(self, shared: Array) -> Array:
         scale = np.exp(shared[0])
@@ -189,9 +244,9 @@ class FocalLengthEstimator:
         camera[:2, 2] += shared[2:4]
         return np.asarray(camera, np.float64)
 
-    def _pose(self, faces: Sequence[FaceCorners]) -> Array | None:
-        """Find the pose of the cube at the present focal length; None where there is none."""
-        points = np.concatenate([self._corners[self._numbers[each.face]] for each in faces])
+    def _pose(self, faces: Sequence[FaceCorners], body: _Body) -> Array | None:
+        """Find the pose of a cube at the present focal length; None where there is none."""
+        points = np.concatenate([body.corners[body.numbers[each.face]] for each in faces])
         pixels = np.concatenate([each.corners for each in faces])
         lens = self._camera(self._shared), self._distortion
         found, turn, shift = cv2.solvePnP(points, pixels, *lens, flags=cv2.SOLVEPNP_SQPNP)
@@ -202,60 +257,85 @@ class FocalLengthEstimator:
             return None
         return se3.pose(se3.rotation(np.ravel(turn)), np.ravel(shift))
 
-    def _near(self, pose: Array) -> Indices:
-        """Numbers of the views that show the cube from nearly the same side."""
-        if not len(self._views.poses):
+    def _near(self, pose: Array, cube: int) -> Indices:
+        """Numbers of the views that show a cube from nearly the same side."""
+        if not len(self._views[cube].poses):
             return np.empty(0, np.intp)
-        deltas = se3.deltas(pose, self._views.poses)
+        deltas = se3.deltas(pose, self._views[cube].poses)
         places, angles = np.linalg.norm(deltas.reshape(-1, 2, 3), axis=2).T
         near = (places < NEW_PLACE * abs(pose[2, 3])) & (angles < NEW_ANGLE)
         return np.flatnonzero(near)
 
-    def _solve(self, views: _Views) -> None:
-        """Adjust all views together; keep them unless the last one is not of the whole cube."""
+    def _solve(self, views: list[_Views], newest: int) -> None:
+        """Adjust all views of all cubes together.
+
+        They are kept unless the last one, of the `newest` cube, is not of the whole cube.
+        """
         shared = self._shared
         for _ in range(MAX_STEPS):
-            residual, own, common, weights = self._linearise(views, shared)
-            weighted = own * weights[..., None]
-            normal = np.swapaxes(weighted, 1, 2) @ own
-            normal[:, range(6), range(6)] += 1e-3  # keeps it solvable
-            normal[:, 6, 6] += 1 / BLOOM_PX**2
-            right = (weighted * residual[..., None]).sum(axis=1)
-            right[:, 6] -= views.blooms / BLOOM_PX**2
-            cross = np.swapaxes(weighted, 1, 2) @ common
-            solved = np.linalg.solve(normal, np.concatenate([cross, right[..., None]], axis=2))
-            flat = common.reshape(-1, len(shared))
-            information = self._prior + flat.T @ (flat * weights.reshape(-1, 1))
-            unknowns = len(shared)
-            information -= cross.reshape(-1, unknowns).T @ solved[..., :-1].reshape(-1, unknowns)
-            score = flat.T @ (weights * residual).ravel() - self._prior @ shared
-            score -= np.einsum("vij,vi->j", cross, solved[..., -1])
+            information, score = self._prior.copy(), -self._prior @ shared
+            equations = {
+                number: self._equations(each, self._bodies[number], shared)
+                for number, each in enumerate(views)
+                if len(each.poses)
+            }
+            for number, found in equations.items():
+                unknowns = self._bodies[number].unknowns
+                information[np.ix_(unknowns, unknowns)] += found.information
+                score[unknowns] += found.score
             inverse = np.asarray(np.linalg.inv(information), np.float64)
             step = inverse @ score
             step *= min(1.0, MAX_CHANGE / max(abs(float(step[0])), 1e-9))
             shared = shared + step
-            views = views.move(solved[..., -1] - solved[..., :-1] @ step)
-            depths = (views.poses[:, 2:3, :3] @ self._corners.reshape(-1, 3).T)[:, 0]
-            if (depths + views.poses[:, 2, 3:]).min() < MIN_DEPTH:
-                return
+            for number, found in equations.items():
+                body = self._bodies[number]
+                views[number] = views[number].move(found.own_changes(step[body.unknowns]))
+                if views[number].least_depth(body.corners) < MIN_DEPTH:
+                    return
             if abs(step[0]) < 0.1 * np.sqrt(inverse[0, 0]):
                 break
-        if abs(shared[0]) > np.log(MAX_SCALE) or not _fits(residual[-1], weights[-1], views):
+        last = equations[newest]
+        if abs(shared[0]) > np.log(MAX_SCALE):
             return
-        freedom = 2.0 * np.count_nonzero(weights) - 14 * len(views.poses)
-        chi = float((weights * residual**2).sum()) / max(freedom / 2, 1.0)
+        if not _fits(last.residual[-1], last.weights[-1], views[newest]):
+            return
+        square = sum(float((each.weights * each.residual**2).sum()) for each in equations.values())
+        numbers = sum(np.count_nonzero(each.weights) for each in equations.values())
+        freedom = 2.0 * numbers - 14 * sum(len(each.poses) for each in views)
+        chi = square / max(freedom / 2, 1.0)
         deviation = float(np.sqrt(inverse[0, 0] * max(chi, 1.0)))
-        self._views, self._shared = views, shared
+        self._views, self._shared = tuple(views), shared
         self.estimate = FocalLength(float(np.exp(shared[0])), max(deviation, LEAST_DEVIATION))
 
-    def _linearise(self, views: _Views, shared: Array) -> tuple[Array, Array, Array, Array]:
+    def _equations(self, views: _Views, body: _Body, shared: Array) -> "_Equations":
+        """Return the equations of the pictures of one cube, by the unknowns that bear on it."""
+        shared = shared[body.unknowns]
+        residual, own, common, weights = self._linearise(views, body, shared)
+        weighted = own * weights[..., None]
+        normal = np.swapaxes(weighted, 1, 2) @ own
+        normal[:, range(6), range(6)] += 1e-3  # keeps it solvable
+        normal[:, 6, 6] += 1 / BLOOM_PX**2
+        right = (weighted * residual[..., None]).sum(axis=1)
+        right[:, 6] -= views.blooms / BLOOM_PX**2
+        cross = np.swapaxes(weighted, 1, 2) @ common
+        solved = np.linalg.solve(normal, np.concatenate([cross, right[..., None]], axis=2))
+        flat, unknowns = common.reshape(-1, len(shared)), len(shared)
+        information = flat.T @ (flat * weights.reshape(-1, 1))
+        information -= cross.reshape(-1, unknowns).T @ solved[..., :-1].reshape(-1, unknowns)
+        score = flat.T @ (weights * residual).ravel()
+        score -= np.einsum("vij,vi->j", cross, solved[..., -1])
+        return _Equations(information, score, solved, residual, weights)
+
+    def _linearise(
+        self, views: _Views, body: _Body, shared: Array
+    ) -> tuple[Array, Array, Array, Array]:
         """Return residuals [px], their two Jacobians, and their weights, each for (V, 8 F) numbers.
 
-        The Jacobians are those by a view's own unknowns, (V, 8 F, 7), and by the shared ones,
-        (V, 8 F, 4 + 12 F).
+        The Jacobians are those by a view's own unknowns, (V, 8 F, 7), and by the shared ones that
+        bear on the cube, (V, 8 F, 4 + 12 F).
         """
         count, faces = views.errors.shape
-        points = self._corners.reshape(-1, 3) + shared[4:].reshape(-1, 3)
+        points = body.corners.reshape(-1, 3) + shared[4:].reshape(-1, 3)
         rotations = views.poses[:, :3, :3]
         arms = points @ np.swapaxes(rotations, 1, 2)
         camera, zero = self._camera(shared), np.zeros(3)

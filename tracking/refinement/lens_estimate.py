@@ -6,6 +6,8 @@ as well: the focal length, and how the cube was folded. All of these are solved 
 bundle adjustment, of which only the normal equations are kept (Triggs et al., 2000, section 6.1).
 """
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -110,10 +112,11 @@ class LensEstimate:
 
 
 class LensEstimator:
-    """Collects what the edges of one cube say of the lens of one camera."""
+    """Collects what the edges of cubes say of the lens of one camera."""
 
-    def __init__(self, cube: CubeModel, projection: Projection) -> None:
-        self._faces = len(cube.faces)
+    def __init__(self, cubes: Sequence[CubeModel], projection: Projection) -> None:
+        counts = (len(cube.faces) for cube in cubes)
+        *self._first_faces, self._faces = itertools.accumulate(counts, initial=0)
         spreads = [K1_SPREAD, FOCAL_SPREAD, *np.repeat(FOLD_SPREAD, 3).tolist() * self._faces]
         self._information = np.diag(1 / np.square(spreads))
         self._score = np.zeros(len(spreads))
@@ -138,8 +141,11 @@ class LensEstimator:
         self._score = self._score - self._information[:, 1] * change
         self._projection = projection
 
-    def learn(self, camera_from_cube: Array, edges: FittedEdges) -> None:
-        """Learn from the edges of a trusted pose, (4, 4), that differs from all before."""
+    def learn(self, camera_from_cube: Array, edges: FittedEdges, cube: int = 0) -> None:
+        """Learn from the edges of a trusted pose, (4, 4), that differs from all before.
+
+        `cube` is the number of the cube.
+        """
         face = edges.profiles.face[edges.fit.strong]
         one_face = face[0] == face[-1]
         if one_face or len(self._counted) >= MAX_FRAMES or not self._is_new(camera_from_cube):
@@ -148,7 +154,7 @@ class LensEstimator:
         if blur > MAX_BLUR_PX:
             return
         self._counted = np.vstack([self._counted, _flat(camera_from_cube)])
-        self._add(camera_from_cube, edges, blur)
+        self._add(camera_from_cube, edges, self._first_faces[cube], blur)
         inverse = np.linalg.inv(self._information)
         found = inverse @ self._score
         # Where edges scatter more than paper does, so does k1.
@@ -163,19 +169,19 @@ class LensEstimator:
         traces = self._counted[:, :9] @ flat[:9]
         return bool(((apart > shift**2) | (traces < 1 + 2 * np.cos(angle))).all())
 
-    def _add(self, pose: Array, edges: FittedEdges, blur: float) -> None:
+    def _add(self, pose: Array, edges: FittedEdges, first_face: int, blur: float) -> None:
         """Add the equations of one frame, less what its pose and its blooms explain."""
         fit = edges.fit
         used = np.flatnonzero(fit.robust > 0)[::POINT_STEP]
         points = fit.strong[used]
-        face = edges.profiles.face[points]
+        face = edges.profiles.face[points] + first_face
         pixels = float(self._projection.matrix[0, 0]) / float(pose[2, 3])
         errors = (CORNER_ERROR_PX, CORNER_ERROR_M * pixels, BLUR_ERROR_SHARE * blur)
         # Without the robust weights: a wrong lens is no outlier.
         weights = fit.measured.information[points]
         totals = np.bincount(face, weights, self._faces)
         weights = weights * MEASUREMENTS_PER_FACE / (totals[face] * np.square(errors).sum())
-        own, shared = fit.rows[used, :8], self._shared_rows(pose, edges.profiles, points)
+        own, shared = fit.rows[used, :8], self._shared_rows(pose, edges.profiles, points, face)
         residual = edges.residual_without_k1[used]
         weighted, own_weighted = shared * weights[:, None], own * weights[:, None]
         normal = own_weighted.T @ own + PRIOR_INFORMATION[:8, :8]
@@ -186,10 +192,12 @@ class LensEstimator:
         self._square += float(weights @ residual**2)
         self._freedom += MEASUREMENTS_PER_FACE * np.count_nonzero(totals) - own.shape[1]
 
-    def _shared_rows(self, pose: Array, profiles: EdgeProfiles, points: Indices) -> Array:
+    def _shared_rows(
+        self, pose: Array, profiles: EdgeProfiles, points: Indices, face: Indices
+    ) -> Array:
         """Jacobian of edge positions by what all frames share, (M, 2 + 6 faces) [px].
 
-        `points` are indices of profiles, (M,).
+        `points` are indices of profiles, (M,), and `face` the number of each one's face.
         """
         rotation, camera, zero = pose[:3, :3], self._projection, np.zeros(3)
         places = profiles.model.points[profiles.numbers[points]] @ rotation.T + pose[:3, 3]
@@ -200,7 +208,7 @@ class LensEstimator:
         lens = np.einsum("ni,nij->nj", profiles.normals[points], by_lens)
         # A fold moves its face along the axes of the cube.
         slopes = (profiles.slopes[points].reshape(-1, 2, 3) @ rotation).reshape(-1, 1, 6)
-        own_face = profiles.face[points, None] == np.arange(self._faces)
+        own_face = face[:, None] == np.arange(self._faces)
         folds = (own_face[:, :, None] * slopes).reshape(len(points), -1)
         return np.concatenate([lens, folds], axis=1)
 

@@ -31,12 +31,12 @@ class MeasuredLens:
     than play leaves is measured.
     """
 
-    def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
+    def __init__(self, cubes: Sequence[CubeModel], intrinsics: Intrinsics) -> None:
         self._told = intrinsics
         self._begun_at = 1.0
         """Scale of the lens from which the estimator counts."""
         self._in_use = FocalLength(1.0, intrinsics.focal_deviation or 0.0)
-        self._estimator = None if self._in_use.known else _estimator_of(cube, intrinsics)
+        self._estimator = None if self._in_use.known else _estimator_of(cubes, intrinsics)
 
     @property
     def learns(self) -> bool:
@@ -48,14 +48,14 @@ class MeasuredLens:
         """Whether the lens in use is right enough for the edges to be found where they are."""
         return self._in_use.deviation < MAX_EDGE_DEVIATION
 
-    def wants(self, camera_from_cube: Array) -> bool:
-        """Whether the edges at a pose, (4, 4), can tell more."""
+    def wants(self, camera_from_cube: Array, cube: int) -> bool:
+        """Whether the edges of a cube at a pose, (4, 4), can tell more."""
         estimator = self._estimator
         return (
             estimator is not None
             and self.learns
             and self.trusts_edges
-            and estimator.wants(camera_from_cube, CORNER_ERROR_PX)
+            and estimator.wants(camera_from_cube, CORNER_ERROR_PX, cube)
         )
 
     @property
@@ -69,10 +69,10 @@ class MeasuredLens:
         found = self._found
         return self._told.lengthen(found.scale, found.deviation) if found else self._told
 
-    def learn(self, faces: "Sequence[FaceCorners]") -> None:
-        """Learn from the faces of the cube in one picture."""
+    def learn(self, faces: "Sequence[FaceCorners]", cube: int) -> None:
+        """Learn from the faces of a cube, by its number, in one picture."""
         if self._estimator is not None:
-            self._estimator.learn(faces)
+            self._estimator.learn(faces, cube)
 
     def take_better(self) -> Intrinsics | None:
         """Return the lens to look through from now on; None where that stays the same."""
@@ -82,12 +82,12 @@ class MeasuredLens:
         self._in_use = found
         return self.best
 
-    def reprint(self, cube: CubeModel) -> None:
-        """Measure on with another print of the cube, from what is known so far."""
+    def reprint(self, cubes: Sequence[CubeModel]) -> None:
+        """Measure on with another print of the cubes, from what is known so far."""
         if self._estimator is not None:
             best = self.best
             self._begun_at *= self._estimator.estimate.scale
-            self._estimator = _estimator_of(cube, best)
+            self._estimator = _estimator_of(cubes, best)
 
     @property
     def _found(self) -> FocalLength | None:
@@ -98,10 +98,10 @@ class MeasuredLens:
         return replace(found, scale=self._begun_at * found.scale)
 
 
-def _estimator_of(cube: CubeModel, intrinsics: Intrinsics) -> "FocalLengthEstimator":
+def _estimator_of(cubes: Sequence[CubeModel], intrinsics: Intrinsics) -> "FocalLengthEstimator":
     from cubeling.tracking.refinement.focal_length import FocalLengthEstimator
 
-    return FocalLengthEstimator(cube, intrinsics)
+    return FocalLengthEstimator(cubes, intrinsics)
 
 
 def track_through(track: Track, cube: CubeModel, before: Intrinsics, after: Intrinsics) -> Track:

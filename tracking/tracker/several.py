@@ -9,6 +9,7 @@ from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.tracker.frame_markers import FrameMarkers
+from cubeling.tracking.tracker.learned_camera import LearnedCamera
 from cubeling.tracking.tracker.tracker import CubeTracker
 
 
@@ -41,7 +42,8 @@ class CubesTracker:
                         f"{face.marker_id} of {cube.dictionary}: give each cube markers of its own"
                     )
                 owners[key] = cube.name
-        self.trackers = tuple(CubeTracker(cube, intrinsics) for cube in cubes)
+        camera = LearnedCamera(intrinsics)
+        self.trackers = tuple(CubeTracker(cube, intrinsics, camera) for cube in cubes)
         """One for each cube, in the order given."""
         self._detectors = {name: MarkerDetector(name) for name, _ in owners}
 

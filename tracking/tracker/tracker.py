@@ -12,16 +12,16 @@ from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.refinement.blur_search import BlurSearch
-from cubeling.tracking.refinement.camera_model import CameraModelEstimator
 from cubeling.tracking.refinement.cell_search import CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
-from cubeling.tracking.refinement.lens_estimate import LensEstimate, LensEstimator
+from cubeling.tracking.refinement.lens_estimate import LensEstimate
 from cubeling.tracking.refinement.systematic_error import SystematicError
 from cubeling.tracking.single_thread import on_one_thread
 from cubeling.tracking.tracker.frame_markers import FrameMarkers
 from cubeling.tracking.tracker.global_search import GlobalDetector, Search
+from cubeling.tracking.tracker.learned_camera import LearnedCamera
 from cubeling.tracking.tracker.local_search import LocalMatch, LocalTracker
-from cubeling.tracking.tracker.measured_lens import MeasuredLens, track_through
+from cubeling.tracking.tracker.measured_lens import track_through
 from cubeling.tracking.tracker.prediction import Track, TrackedPose
 from cubeling.tracking.tracker.rest import Rest
 from cubeling.tracking.tracker.verdict import (
@@ -35,10 +35,6 @@ from cubeling.tracking.tracker.verdict import (
 MAX_THOROUGH_FRAMES, THOROUGH_INTERVAL = 30, 5
 """Frames without the cube in which partly hidden markers are detected, then the interval."""
 
-MAX_KEPT_CHANGE = 0.05
-"""Change of the logarithm of the focal length up to which what was learned of the distortion is
-kept: through another lens than that, the faces were stretched by more than it explains."""
-
 
 class CubeTracker:
     """Tracks one cube through the frames of one camera.
@@ -49,6 +45,8 @@ class CubeTracker:
         The cube, as printed.
     intrinsics
         The camera; every frame must have its size.
+    camera
+        What is learned of that camera, where several trackers share it.
 
     Notes
     -----
@@ -58,14 +56,15 @@ class CubeTracker:
     refuses jumps.
     """
 
-    def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
+    def __init__(
+        self, cube: CubeModel, intrinsics: Intrinsics, camera: LearnedCamera | None = None
+    ) -> None:
         self.cube = cube
         self._detectors = {cube.dictionary: MarkerDetector(cube.dictionary)}
-        self._camera = CameraModelEstimator()
+        self._camera = camera or LearnedCamera(intrinsics)
+        self._number = self._camera.add(cube)
         self._past = Past()
-        self._measured = MeasuredLens(cube, intrinsics)
         self._look_through(intrinsics)
-        self._lens = LensEstimator(cube, self._projection)
 
     def reprint(self, cube: CubeModel) -> None:
         """Take the cube as it is printed, not as was thought; what is known of the camera stays.
@@ -74,16 +73,15 @@ class CubeTracker:
         """
         self.cube = cube
         self._past = Past()
-        self._measured.reprint(cube)
+        self._camera.reprint(self._number, cube)
         self._look_through(self.intrinsics)
-        self._lens = LensEstimator(cube, self._projection)
 
     def _look_through(self, intrinsics: Intrinsics) -> None:
         """Take another lens; what depends on none, and the track, is kept."""
         cube = self.cube
         self.intrinsics = intrinsics
         """The camera; its focal length is measured in play where it was guessed."""
-        self._projection = projection = Projection(intrinsics)
+        projection = Projection(intrinsics)
         edges = EdgeSearch(cube, projection)
         blur = BlurSearch(cube, projection, edges)
         cells = CellSearch(cube, projection)
@@ -97,12 +95,12 @@ class CubeTracker:
     @property
     def measured_intrinsics(self) -> Intrinsics:
         """The camera, with its focal length as well as it is known after this frame."""
-        return self._measured.best
+        return self._camera.measured.best
 
     @property
     def lens(self) -> LensEstimate:
         """What the poses so far tell of the lens, besides what the intrinsics claim."""
-        return self._lens.estimate
+        return self._camera.lens.estimate
 
     @property
     def searching(self) -> bool:
@@ -112,7 +110,7 @@ class CubeTracker:
     @property
     def readout(self) -> float:
         """Time that a rolling shutter takes from the first row to the last [s]; 0 if not known."""
-        return self._camera.model.readout
+        return self._camera.estimator.model.readout
 
     @on_one_thread
     def update(self, frame: Frame, markers: FrameMarkers | None = None) -> CubeState:
@@ -124,22 +122,23 @@ class CubeTracker:
             The size of the frame is not that of the intrinsics.
         """
         self._check_size(frame)
-        self._take_better_lens()
+        self._camera.begin(frame)
+        self._take_lens(self._camera.intrinsics)
         image, now, past = frame.image, frame.timestamp, self._past
 
         # Predict where the cube should be, by its last poses.
         prediction = past.track.predict(now)
 
         # Search there, by the edges or else by the blurred image; both help to estimate the camera.
-        match = LocalMatch()
+        match, camera = LocalMatch(), self._camera.estimator
         if prediction is not None:
-            match = self._local_tracker.search(image, past.track, prediction, self._camera.model)
-            self._camera.learn(match.blur, match.studied)
-        tone = self._camera.model.tone
+            match = self._local_tracker.search(image, past.track, prediction, camera.model)
+            camera.learn(match.blur, match.studied)
+        tone = camera.model.tone
 
         if match.candidate is not None:
             self._search = None
-            if not self._measured.trusts_edges:
+            if not self._camera.measured.trusts_edges:
                 self._learn_lens(markers or FrameMarkers(frame, self._detectors))
             # Judge the pose: a single face may tilt either way.
             verdict = self._followed_pose_judge.judge(match.candidate, image, tone, past)
@@ -169,21 +168,15 @@ class CubeTracker:
             return self._predict(now, verdict.refused)
         pose, noise = found.camera_from_cube, found.covariance
         by_corners, lens_shifts = self._systematic_error.covariance(
-            pose, found.faces, self._lens.k1_error, found.blur, found.lone_residual
+            pose, found.faces, self._camera.lens.k1_error, found.blur, found.lone_residual
         )
         if is_uncertain(noise + by_corners):
             return self._predict(now, "unsure")
         if found.edges is not None:
-            self._lens.learn(pose, found.edges)
-            if self._measured.wants(pose):
-                # A camera that was calibrated needs neither: loaded where the lens is measured.
-                from cubeling.tracking.refinement.face_corners import fitted_faces
-
-                lens = self._projection
-                self._measured.learn(fitted_faces(self.cube, lens, pose, found.faces, found.edges))
+            self._camera.learn_edges(self._number, pose, found.faces, found.edges)
         velocity, acceleration = track.motion(pose, noise, now)
         if found.edges is not None:
-            self._camera.readout.learn(found.edges, velocity, self.intrinsics.size[1])
+            camera.readout.learn(found.edges, velocity, self.intrinsics.size[1])
         systematic = by_corners + lens_shifts @ lens_shifts.T
         track = track.add(TrackedPose(pose, velocity, noise, now, acceleration, systematic))
         self._past = replace(verdict.past, track=track, jump=None, frames_lost=0)
@@ -199,7 +192,7 @@ class CubeTracker:
             faces=found.faces,
             reprojection_error=found.error,
             timestamp=now,
-            focal_scale=self._measured.scale,
+            focal_scale=self._camera.measured.scale,
             focal_shift=lens_shifts[:, 1],
         )
 
@@ -208,23 +201,16 @@ class CubeTracker:
 
         Whether or not a pose is trusted: a wrong lens is a reason why none is.
         """
-        if self._measured.learns:
-            from cubeling.tracking.refinement.face_corners import detected_faces
-
+        if self._camera.measured.learns:
             seen = markers.read(self.cube.dictionary, "first window")
-            self._measured.learn(detected_faces(markers_of(self.cube, seen)))
+            self._camera.learn_corners(self._number, markers_of(self.cube, seen))
 
-    def _take_better_lens(self) -> None:
+    def _take_lens(self, intrinsics: Intrinsics) -> None:
         """Look through the lens that play has measured, if it differs from the one in use."""
-        before, better = self.intrinsics, self._measured.take_better()
-        if better is not None:
-            self._look_through(better)
-            change = np.log(better.matrix[0, 0] / before.matrix[0, 0])
-            if abs(change) < MAX_KEPT_CHANGE:
-                self._lens.look_through(self._projection)
-            else:
-                self._lens = LensEstimator(self.cube, self._projection)
-            track = track_through(self._past.track, self.cube, before, better)
+        before = self.intrinsics
+        if intrinsics is not before:
+            self._look_through(intrinsics)
+            track = track_through(self._past.track, self.cube, before, intrinsics)
             self._past = replace(self._past, track=track, jump=None)
 
     def _predict(self, now: float, refused: str) -> CubeState:
@@ -243,7 +229,7 @@ class CubeTracker:
             reprojection_error=np.nan,
             timestamp=now,
             refused=refused,
-            focal_scale=self._measured.scale,
+            focal_scale=self._camera.measured.scale,
         )
 
     def _await(self, verdict: Verdict, now: float) -> CubeState:

@@ -65,7 +65,7 @@ def folded(seed: int) -> CubeModel:
 def test_a_wrong_guess_is_corrected_and_never_surer_than_it_is_right(
     factor: float, seed: int
 ) -> None:
-    estimator = FocalLengthEstimator(CUBE, GUESS.lengthen(factor, 0.35))
+    estimator = FocalLengthEstimator([CUBE], GUESS.lengthen(factor, 0.35))
     for faces in pictures(CAMERA, seed, 40, folded(seed)):
         estimator.learn(faces)
         found = estimator.estimate
@@ -79,7 +79,7 @@ def test_the_stated_deviation_is_the_spread_over_cubes_of_bent_paper() -> None:
     """Many pictures of one cube have its paper in common, which averaging does not remove."""
     errors = []
     for seed in range(12):
-        estimator = FocalLengthEstimator(CUBE, GUESS)
+        estimator = FocalLengthEstimator([CUBE], GUESS)
         for faces in pictures(CAMERA, seed, 15, folded(seed)):
             estimator.learn(faces)
         errors.append(np.log(estimator.estimate.scale) / estimator.estimate.deviation)
@@ -87,7 +87,7 @@ def test_the_stated_deviation_is_the_spread_over_cubes_of_bent_paper() -> None:
 
 
 def test_a_picture_like_those_before_tells_nothing_new() -> None:
-    estimator = FocalLengthEstimator(CUBE, GUESS)
+    estimator = FocalLengthEstimator([CUBE], GUESS)
     first = next(pictures(CAMERA, 1, 1))
     estimator.learn(first)
     found = estimator.estimate
@@ -97,8 +97,23 @@ def test_a_picture_like_those_before_tells_nothing_new() -> None:
     assert estimator.estimate == found
 
 
+def test_two_cubes_tell_one_lens_more_surely_than_each_alone() -> None:
+    """Each is bent in its own way, and their pictures take turns."""
+    random, cubes = np.random.default_rng(1), [folded(1), folded(2)]
+    both = FocalLengthEstimator([CUBE, CUBE], GUESS.lengthen(1.7, 0.35))
+    alone = [FocalLengthEstimator([CUBE], GUESS.lengthen(1.7, 0.35)) for _ in cubes]
+    shown = [pictures(CAMERA, int(random.integers(99)), 12, cube) for cube in cubes]
+    for faces in zip(*shown, strict=True):
+        for number, each in enumerate(faces):
+            both.learn(each, number)
+            alone[number].learn(each)
+            assert abs(np.log(both.estimate.scale * 1.7)) < 3 * both.estimate.deviation
+    assert both.estimate.deviation < min(each.estimate.deviation for each in alone)
+    assert abs(both.estimate.scale * 1.7 - 1) < 0.03
+
+
 def test_a_lone_face_tells_nothing() -> None:
-    estimator = FocalLengthEstimator(CUBE, GUESS)
+    estimator = FocalLengthEstimator([CUBE], GUESS)
     for faces in pictures(CAMERA, 1, 5):
         estimator.learn(faces[:1])
     assert estimator.estimate.deviation == 0.35
@@ -106,7 +121,7 @@ def test_a_lone_face_tells_nothing() -> None:
 
 def test_a_flat_sheet_is_no_cube() -> None:
     """Markers side by side in one plane fit no cube, whatever the lens."""
-    estimator = FocalLengthEstimator(CUBE, GUESS)
+    estimator = FocalLengthEstimator([CUBE], GUESS)
     front = CUBE.face("front").corners
     edge = np.array([CUBE.edge, 0.0, 0.0])
     for turn in (0.3, 0.6, 0.9):

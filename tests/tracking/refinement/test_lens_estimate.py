@@ -117,7 +117,7 @@ def test_a_cube_at_rest_counts_once() -> None:
 
 def test_what_was_measured_replaces_what_is_assumed_of_a_lens() -> None:
     claimed, measured = (
-        LensEstimator(CUBE, Projection(replace(CAMERA, distortion=np.array([k1, 0, 0, 0, 0]))))
+        LensEstimator([CUBE], Projection(replace(CAMERA, distortion=np.array([k1, 0, 0, 0, 0]))))
         for k1 in (0.0, K1)
     )
     assert (claimed.k1_error, measured.k1_error) == (CLAIMED_K1, MEASURED_K1)

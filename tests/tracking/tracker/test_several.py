@@ -50,7 +50,7 @@ def test_two_cubes_are_followed_in_the_order_given(cubes: tuple[CubeModel, ...])
 
 
 def test_each_state_is_that_of_a_tracker_of_its_own() -> None:
-    """To the last bit: nothing that is shared may change a pose, out of sight or in."""
+    """To the last bit, before a camera that is known: nothing else is shared but markers."""
     cubes = (LEFT, RIGHT)
     together, alone = CubesTracker(cubes, CAMERA), [CubeTracker(cube, CAMERA) for cube in cubes]
     shown = [cubes, cubes, (LEFT,), (LEFT,), cubes, (), (RIGHT,), cubes]
@@ -61,6 +61,24 @@ def test_each_state_is_that_of_a_tracker_of_its_own() -> None:
         foretold = together.predict(seen.timestamp + 0.02)
         single = [each.predict(seen.timestamp + 0.02) for each in alone]
         assert [repr(state) for state in foretold] == [repr(state) for state in single]
+
+
+@pytest.mark.slow(reason="a focal length is known after a second of play")
+def test_what_one_cube_tells_of_the_lens_serves_both() -> None:
+    """One lies still, the other is turned: both are seen through the same, right lens."""
+    tracker = CubesTracker((LEFT, RIGHT), CAMERA.lengthen(1.5, 0.35))
+    still = held(0.8, -0.5, 0.4, at=(0.09, -0.01, 0.42))
+    for number in range(30):
+        t = number / 30
+        turned = held(0.5 + 0.3 * np.sin(7 * t), 0.3 + 0.9 * t, 0.8 * t, at=(-0.08, 0, 0.4))
+        picture = photograph(scene((LEFT, turned), (RIGHT, still)), seed=number)
+        left, right = tracker.update(Frame(picture, number / RATE, number))
+        assert left.focal_scale == right.focal_scale
+    assert right.camera_from_cube is not None
+    assert left.focal_scale == pytest.approx(1 / 1.5, rel=0.03)
+    assert right.camera_from_cube[2, 3] == pytest.approx(still[2, 3], rel=0.03)
+    one, other = (each.measured_intrinsics for each in tracker.trackers)
+    assert np.array_equal(one.matrix, other.matrix)
 
 
 def test_a_lost_one_is_found_again_while_the_other_is_followed() -> None:
