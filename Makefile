@@ -46,6 +46,7 @@ campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faul
 	$(BIN)/python -m tests.campaigns.long_play --hours 4
 	$(BIN)/python -m tests.campaigns.long_play --minutes 30
 	$(BIN)/python -m tests.campaigns.tracker
+	$(BIN)/python -m tests.campaigns.two_cubes
 
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
@@ -63,6 +64,7 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.camera_faults --faults stall "huge header"
 	$(BIN)/python -m tests.campaigns.long_play --hours 0.1
 	$(BIN)/python -m tests.campaigns.tracker --frames 1200
+	$(BIN)/python -m tests.campaigns.two_cubes --clips 100
 
 # pre-commit runs the parts, each where it has something to check.
 check: check-format check-lint check-licences check-floors check-types  ## check formatting, lint, docstrings, licences, the floors of the rooms, and types

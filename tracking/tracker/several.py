@@ -39,7 +39,8 @@ class CubesTracker:
                 if key in owners:
                     raise TrackingError(
                         f"the cubes '{owners[key]}' and '{cube.name}' both have marker "
-                        f"{face.marker_id} of {cube.dictionary}: give each cube markers of its own"
+                        f"{face.marker_id} of {cube.dictionary}: print one with markers of its "
+                        "own, as `cubeling cube locomotion-2` does"
                     )
                 owners[key] = cube.name
         camera = LearnedCamera(intrinsics)

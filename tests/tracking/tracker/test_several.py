@@ -120,7 +120,13 @@ def test_cubes_that_share_a_marker_are_refused_in_one_line() -> None:
         CubesTracker((LEFT, RIGHT, twin("DICT_4X4_50")), CAMERA)
     message = str(caught.value)
     assert "\n" not in message
-    for told in ("'locomotion'", "'twin'", "marker 12", "DICT_4X4_50", "give each cube"):
+    for told in (
+        "'locomotion'",
+        "'twin'",
+        "marker 12",
+        "DICT_4X4_50",
+        "cubeling cube locomotion-2",
+    ):
         assert told in message
     with pytest.raises(TrackingError, match="both have marker"):
         CubesTracker((LEFT, LEFT), CAMERA)
