@@ -64,7 +64,7 @@ class Face:
         """Name of the side of the body that carries the marker."""
         return side_of(self.name)
 
-    @property
+    @cached_property
     def normal(self) -> Array:
         """Outward unit normal in the cube frame, (3,), by the measured corners."""
         first, second = self.corners[2] - self.corners[0], self.corners[1] - self.corners[3]

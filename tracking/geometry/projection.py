@@ -34,6 +34,8 @@ class Projection:
         there. `cv2.projectPoints` takes ten times as long, as it always computes a Jacobian.
         """
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
+        if self.claims_no_distortion:
+            return self._pinhole(x, y)
         square = x * x + y * y
         return self._pixels(x, y, square, self._radial(square))
 
@@ -44,6 +46,13 @@ class Projection:
         """
         near = 1 / points[:, 2]
         x, y = points[:, 0] * near, points[:, 1] * near
+        if self.claims_no_distortion:  # the same numbers in half the time
+            jacobian = np.zeros((2, 3, len(x)))
+            np.multiply(self._fx, near, out=jacobian[0, 0])
+            np.multiply(self._fy, near, out=jacobian[1, 1])
+            np.multiply(-x, jacobian[0, 0], out=jacobian[0, 2])
+            np.multiply(-y, jacobian[1, 1], out=jacobian[1, 2])
+            return self._pinhole(x, y), jacobian.transpose(2, 0, 1)
         square = x * x + y * y
         radial = self._radial(square)
         slope = self._radial_slope(square, radial)
@@ -75,6 +84,12 @@ class Projection:
     def _divide(self, square: Array) -> Array:
         k4, k5, k6 = self._divisor
         return 1 + square * (k4 + square * (k5 + square * k6))
+
+    def _pinhole(self, x: Array, y: Array) -> Array:
+        pixels = np.empty((2, len(x)))
+        pixels[0] = x * self._fx + self._cx
+        pixels[1] = y * self._fy + self._cy
+        return pixels.T
 
     def _pixels(self, x: Array, y: Array, square: Array, radial: Array) -> Array:
         cross, p1, p2 = 2 * x * y, self._p1, self._p2

@@ -133,8 +133,12 @@ def _better(one: Candidate, other: Candidate) -> Candidate | None:
 
 def is_uncertain(covariance: Array) -> bool:
     """Whether a pose may be off by more than a person would accept."""
+    allowed = np.square(MAX_POSE_SPREAD)
+    variances = covariance.diagonal().reshape(2, 3).sum(axis=1)
+    if (variances <= allowed).all():  # no eigenvalue is more than their sum
+        return False
     largest = np.linalg.eigvalsh([covariance[:3, :3], covariance[3:, 3:]])[:, -1]
-    return bool((largest > np.square(MAX_POSE_SPREAD)).any())
+    return bool((largest > allowed).any())
 
 
 def is_unambiguous(candidates: Sequence[Candidate]) -> bool:
