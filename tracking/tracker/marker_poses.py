@@ -202,8 +202,9 @@ class MarkerPoses:
         pose = match.alignment.camera_from_cube
         if self._is_contradicted(pose, match.found, observations):
             return []
-        error = self._solver.error(pose, solution.observations)
-        candidate = replace(match.candidate, error=error)
+        candidate = match.candidate
+        if solution.observations:  # else the other lean of a face that no marker was read of
+            candidate = replace(candidate, error=self._solver.error(pose, solution.observations))
         if candidate.lone:
             smeared = MAX_LONE_BLUR_CELLS * self._footprint.pixels_per_cell(pose)
             blurred = candidate.blur > max(MAX_LONE_BLUR_PX, smeared)

@@ -1,10 +1,10 @@
 """Track two cubes that cross, are covered by hands and are swapped: none is taken for the other.
 
 `python -m tests.campaigns.two_cubes [--clips 1000] [--seed 1] [--processes 2]` draws as many clips,
-each with two other cubes, and prints a table. The exit code is 1 if a pose is that of the other
-cube, if a pose is trusted in the third frame after its cube was last seen or later, if a trusted
-pose is wrong (most of all one that stays while the cube moves), or if the cubes are found too
-seldom. `--clip N` tells of each frame of one clip.
+each with two other cubes, and prints a table. The exit code is 1 if a tracker raises an error, if a
+pose is that of the other cube, if one is trusted in the third frame after its cube was last in view
+or later, if a trusted pose is wrong (most of all one that stays while the cube moves), or if the
+cubes are found too seldom. `--clip N` tells of each frame of one clip.
 
 Truth is the drawing: where each cube is, and which share of its outline nothing covers.
 """
@@ -59,7 +59,7 @@ def main() -> int:
     events = count.events
     share = events["found"] / max(events["in view"], 1)
     table = Table("two cubes", "", title=f"{wanted.clips:,} crossings, coverings and swaps")
-    for name in ("poses", "the other cube", "loss not said", "frozen", "wrong"):
+    for name in ("poses", "the other cube", "loss not said", "frozen", "wrong", "errors"):
         table.add_row(name, f"{events[name]:,}")
     table.add_row("found where in view", f"{share:.1%}")
     waits = np.array(count.waits or [0])

@@ -96,7 +96,12 @@ def show(seed: int, number: int, tell: Callable[[str], None] = lambda line: None
     tracker, count = CubesTracker(pair, CAMERA), Count()
     watches = Watch(), Watch()
     for moment in moments:
-        states = tracker.update(moment.frame)
+        try:
+            states = tracker.update(moment.frame)
+        except Exception as error:
+            count.events["errors"] += 1
+            count.wrong_clips[number] = f"{type(error).__name__}: {error}"
+            break
         line = f"{moment.frame.index:2}"
         for own, watch in enumerate(watches):
             state, share = states[own], moment.shares[own]

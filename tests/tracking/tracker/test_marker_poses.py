@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cubeling.tracking.cube.marker import marker_cells
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.detection.markers import Marker, MarkerDetector, Observation, markers_of
+from cubeling.tracking.detection.pose_from_points import CornerPose
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.refinement.camera_model import ToneCurve
 from cubeling.tracking.refinement.candidate import Candidate
@@ -39,12 +40,16 @@ class CountingCells(CellSearch):
         return super().begin(*arguments, **options)
 
 
+def poses_by(cells: CellSearch) -> MarkerPoses:
+    return MarkerPoses(CUBE, PROJECTION, EdgeSearch(CUBE, PROJECTION), cells)
+
+
 def find(
     picture: Picture, seen: list[Observation], cells: CellSearch | None = None
 ) -> tuple[list[Candidate], int]:
     """Poses for the markers of a picture, and how often the cells were searched."""
     counting = cells or CountingCells(CUBE, PROJECTION)
-    poses = MarkerPoses(CUBE, PROJECTION, EdgeSearch(CUBE, PROJECTION), counting)
+    poses = poses_by(counting)
     waiting = poses.solve(seen)
     agreed = poses.find_agreed(picture, waiting, seen, LIGHT)
     if agreed is not None:
@@ -221,3 +226,15 @@ def test_a_face_that_the_pose_turns_away_contradicts_where_it_is_read_near() -> 
         corners = two[0].corners + (beside * two[0].size, 0.0)
         found, _ = find(picture, [*two, Observation(back, corners)])
         assert any(each.certain for each in found) != contradicts
+
+
+def test_a_lean_that_no_marker_proposed_is_compared_as_others_are() -> None:
+    """The other lean of a face that the cells have found, and OpenCV has not."""
+    pose = held()
+    picture, poses = drawn(pose), poses_by(CellSearch(CUBE, PROJECTION))
+    told = poses.compare_cells(picture, CornerPose(pose, (), 0.0, np.eye(6)), [], LIGHT)
+    while isinstance(told, CellRun):
+        told = poses.compare_cells(picture, CornerPose(pose, (), 0.0, np.eye(6)), [], LIGHT, told)
+    (found,) = told
+    assert found.certain
+    assert off(found.camera_from_cube, pose)[0] < 0.5
