@@ -81,6 +81,9 @@ class Search:
     seen: tuple[Observation, ...] = ()
     """The markers that were read so far."""
 
+    absent: tuple[Observation, ...] = ()
+    """Those of them that are others, which only look alike."""
+
     flat: bool = False
     """Whether its markers lie flat, as on the sheet of the cube before it is folded."""
 
@@ -248,13 +251,11 @@ class GlobalDetector:
             ahead = _in_order([(first, found), *others])
             trial = self._comparison(ahead, read, mirrored=mirrored)
             return replace(search, half_done=True).try_first([trial])
-        search = search.find(found)
-        agreed = search.found and search.found[0].certain and search.found[0].agreed
-        # A lone marker that is not there at one lean is not there at the other.
-        lone = len(first.observations) == 1
-        absent = lone and found and all(each.evidence is None for each in found)
-        if agreed or absent:
+        search = search.find(found.candidates)
+        if search.found and search.found[0].certain and search.found[0].agreed:
             return replace(search, half_done=False)
+        if found.absent:
+            return replace(search, half_done=False, absent=(*search.absent, *first.observations))
         if not others and not mirrored:
             others = [(each, None) for each in self._poses.mirror(first, search.found)]
             mirrored = True
@@ -287,6 +288,8 @@ class GlobalDetector:
         return replace(search, trials=(*search.trials[:-1], closer, *search.trials[-1:]))
 
     def _read_small(self, region: Region, search: Search) -> Search:
+        if len(search.absent) == len(search.seen):  # it was no marker of the cube, so none is near
+            return search
         read = self._hidden.detect(search.markers.grey, region, doubled=True)
         return self._try_more(search, read, crisp=False)
 

@@ -1,7 +1,7 @@
 """Candidate poses from the markers of one frame, weighed by all faces in view."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -62,6 +62,22 @@ MAX_TURNED_DISTANCE = 3.0
 is this near to the middle of the cube, in sides: a sheet reaches two faces beyond those found."""
 
 
+MIN_LONE_INNER = 0.6
+"""Correlation inside the border below which a lone marker is another one: its other lean, which
+looks nearly the same, does not reach what is needed."""
+
+
+@dataclass(frozen=True)
+class CellComparison:
+    """What the cells say of one proposed pose."""
+
+    candidates: tuple[Candidate, ...] = ()
+    """The pose, measured; none where markers contradict it."""
+
+    absent: bool = False
+    """Whether it rests on a lone marker that is not there, at whatever lean."""
+
+
 class MarkerPoses:
     """Proposes poses of one cube from its markers, aligned and weighed by `cells`."""
 
@@ -105,8 +121,8 @@ class MarkerPoses:
         observations: list[Observation],
         tone: Floats,
         run: CellRun | None = None,
-    ) -> list[Candidate] | CellRun:
-        """Align the cells of all faces near a proposed pose; none where markers contradict it.
+    ) -> CellComparison | CellRun:
+        """Align the cells of all faces near a proposed pose.
 
         Each call takes one step, and returns how far it has come until it is done; `run` is what
         the last call returned.
@@ -118,7 +134,8 @@ class MarkerPoses:
             run = self._cells.advance(run)
         if not run.done:
             return run
-        return self._candidates(image, solution, run.match, observations, tone)
+        found = self._candidates(image, solution, run.match, observations, tone)
+        return CellComparison(tuple(found), _is_absent(solution, run.match))
 
     def mirror(self, solution: CornerPose, found: Sequence[Candidate]) -> list[CornerPose]:
         """Propose the other lean of a single face that was found, the best first; else nothing."""
@@ -266,6 +283,14 @@ class MarkerPoses:
         points = seen.face.corners @ pose[:3, :3].T + pose[:3, 3]
         away = np.linalg.norm(self._projection.project(points) - seen.corners, axis=1)
         return float(np.median(away)) / seen.size
+
+
+def _is_absent(solution: CornerPose, match: CellMatch | None) -> bool:
+    """Whether a pose rests on a lone marker that the cells show to be another one."""
+    if len(solution.observations) != 1 or match is None:
+        return len(solution.observations) == 1
+    inner = match.alignment.inner.get(solution.observations[0].face.name, 0.0)
+    return not match.proved and inner < MIN_LONE_INNER
 
 
 def _near(pose: Array, other: Array) -> bool:

@@ -61,7 +61,7 @@ def find(
         told = poses.compare_cells(picture, solution, seen, LIGHT)
         while isinstance(told, CellRun):
             told = poses.compare_cells(picture, solution, seen, LIGHT, told)
-        found = sorted([*found, *told], key=lambda each: each.rank)
+        found = sorted([*found, *told.candidates], key=lambda each: each.rank)
         if not waiting and not mirrored:
             waiting, mirrored = poses.mirror(solution, found), True
     return found, getattr(counting, "count", 0)
@@ -235,6 +235,6 @@ def test_a_lean_that_no_marker_proposed_is_compared_as_others_are() -> None:
     told = poses.compare_cells(picture, CornerPose(pose, (), 0.0, np.eye(6)), [], LIGHT)
     while isinstance(told, CellRun):
         told = poses.compare_cells(picture, CornerPose(pose, (), 0.0, np.eye(6)), [], LIGHT, told)
-    (found,) = told
+    (found,) = told.candidates
     assert found.certain
     assert off(found.camera_from_cube, pose)[0] < 0.5
