@@ -12,7 +12,7 @@ class FacePlanes:
 
     def __init__(self, cube: CubeModel) -> None:
         self.names = tuple(face.name for face in cube.faces)
-        self.normals = np.stack([plane_normal(face) for face in cube.faces])
+        self.normals = np.stack([face.normal for face in cube.faces])
         """Outward unit normals, (faces, 3)."""
         self.centres = np.stack([face.corners.mean(axis=0) for face in cube.faces])
         """Centres of the markers, (faces, 3) [m]."""
@@ -43,17 +43,10 @@ class FacePlanes:
         return se3.pose(mirrored, centre - mirrored @ self.centres[face])
 
 
-def plane_normal(face: Face) -> Array:
-    """Outward unit normal of the plane through a face's four corners, (3,)."""
-    top_left, top_right, bottom_right, bottom_left = face.corners
-    normal = np.cross(top_right - bottom_left, top_left - bottom_right)
-    return np.asarray(normal / np.linalg.norm(normal), np.float64)
-
-
 def face_frame(face: Face) -> Array:
     """Frame of a face, `cube_from_face` (4, 4): x to the marker's right, y down, z inward."""
     top_left, top_right, bottom_right, bottom_left = face.corners
-    inward = -plane_normal(face)
+    inward = -face.normal
     right = (top_right - top_left) + (bottom_right - bottom_left)
     right -= inward * (inward @ right)
     right /= np.linalg.norm(right)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, strategies as st
 from numpy.typing import NDArray
 
-from cubeling.tracking.cube.faces import FacePlanes, face_frame, plane_normal
+from cubeling.tracking.cube.faces import FacePlanes, face_frame
 from cubeling.tracking.cube.model import FACE_AXES, CubeModel, Face, bundled_cubes, face_corners
 from cubeling.tracking.geometry import se3
 from cubeling.tracking.synthetic.folding import fold_cube
@@ -74,7 +74,7 @@ def test_the_frame_of_a_face_lies_as_its_marker_does(name: str, roll: int) -> No
     corners = (face.corners - frame[:3, 3]) @ frame[:3, :3]
     square = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]) * 0.0225
     assert np.allclose(corners, square, atol=1e-12)
-    assert np.allclose(frame[:3, 2], -plane_normal(face), atol=1e-12)
+    assert np.allclose(frame[:3, 2], -face.normal, atol=1e-12)
 
 
 def test_a_face_that_was_folded_askew_still_has_a_right_angled_frame() -> None:
@@ -82,7 +82,7 @@ def test_a_face_that_was_folded_askew_still_has_a_right_angled_frame() -> None:
     for face, square in zip(askew.faces, CUBE.faces, strict=True):
         frame = face_frame(face)
         assert np.allclose(frame[:3, :3].T @ frame[:3, :3], np.eye(3), atol=1e-12)
-        lean = np.arccos(np.clip(plane_normal(face) @ plane_normal(square), -1, 1))
+        lean = np.arccos(np.clip(face.normal @ square.normal, -1, 1))
         assert np.deg2rad(0.01) < lean < np.deg2rad(4)
         assert np.allclose(frame[:3, 3], face.corners.mean(axis=0))
 
