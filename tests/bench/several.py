@@ -22,8 +22,10 @@ from tests.tracking.drawn import WIDE, held, photograph, scene
 
 Array = NDArray[np.float64]
 
-MAX_TWO_CUBE_RATIO = 2.0
-"""Target for the cost of two cubes relative to one."""
+MAX_TWO_CUBE_RATIO = 1.3
+"""Target for the cost of two cubes relative to one, which is missed: what can be shared is. Six of
+seven parts of an update are the calls of numpy and OpenCV on arrays of at most 500 numbers, and not
+the numbers: with an eighth of the edge points it takes 13 % less time."""
 
 RATE_HZ = 30.0
 
