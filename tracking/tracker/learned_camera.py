@@ -40,7 +40,7 @@ class LearnedCamera:
         self.estimator = CameraModelEstimator()
         """Exposure, tone curve and rolling shutter."""
         self._cubes: list[CubeModel] = []
-        self._frame: Frame | None = None
+        self._begun: tuple[int, float] | None = None
 
     def add(self, cube: CubeModel) -> int:
         """Take one more cube, before the first frame; return its number."""
@@ -59,9 +59,11 @@ class LearnedCamera:
 
     def begin(self, frame: Frame) -> None:
         """Decide through which lens a frame is seen: once, and for all cubes."""
-        if frame is self._frame:
+        # Not the frame itself: checkpoints keep all that is held here.
+        moment = frame.index, frame.timestamp
+        if moment == self._begun:
             return
-        self._frame = frame
+        self._begun = moment
         better = self.measured.take_better()
         if better is None:
             return
