@@ -48,6 +48,8 @@ GROUPS = {
     "Study": {
         "export": "Write recorded sessions as tables, in CSV and JSON Lines, with a data "
         "dictionary.",
+        "label": "Say who played a recorded session, and mark moments in it; the recording "
+        "stays as it was.",
         "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
         "speech": "Look at recorded speech: its pitch, accents, words and phones.",
         "reproduce": "Make the printed tables of the four works again, beside what they print.",

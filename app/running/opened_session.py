@@ -250,6 +250,7 @@ class OpenedSession:
             self.playground,
             self.source,
             [wire for _, wire in self.robots],
+            language=self.speaker.language,
             from_within=True,
         )
         self.playground.fixed = True

@@ -163,6 +163,11 @@ def open_session(
             replay_inputs = replayed.replay_inputs(options.stage)
         wire, clock = WireTap(), SessionClock()
         second_wire = WireTap(f"/robots/{options.robot_names[1]}/wire")
+        pace = _pace(options, source, player)
+        stepped = pace is None and not source.live
+        lines = None if replayed is None else replayed.lines
+        speaker = open_speaker(options, (character, *others), lines, waits=stepped)
+        closing.callback(speaker.close)
         recording = None
         if options.record is not None:
             from cubeling.app.running.recording import SessionRecording
@@ -174,14 +179,10 @@ def open_session(
                     playground,
                     source,
                     (wire, second_wire),
+                    language=speaker.language,
                     from_within=options.start_s > 0.0,
                 )
             )
-        pace = _pace(options, source, player)
-        stepped = pace is None and not source.live
-        lines = None if replayed is None else replayed.lines
-        speaker = open_speaker(options, (character, *others), lines, waits=stepped)
-        closing.callback(speaker.close)
         robot, second = (
             closing.enter_context(
                 RobotLine.open(url, clock, tap, options.robot_settings, name=name, stepped=stepped)

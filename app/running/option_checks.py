@@ -5,7 +5,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character, check_input, check_motions
 from cubeling.app.output_path import check_output
 from cubeling.app.pipeline.choices import check_look, check_speed_map, check_turns
-from cubeling.app.session import SessionOptions, check_codec
+from cubeling.app.session import SessionLabels, SessionOptions, check_codec
 from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT, bundled_lines, read_lines
 from cubeling.app.ui.output_formats import OUTPUT_SUFFIXES, check_video_codec
 
@@ -42,6 +42,7 @@ def check_inputs(options: SessionOptions) -> None:
     Raises AppError, AffectError, CharacterError or RobotError. What only reading shows is left to
     those who read it.
     """
+    SessionLabels(options.participant, options.condition)  # refuses what is no label
     check_look(options.look)
     check_speed_map(options.speed_map)
     check_turns(options.turns)

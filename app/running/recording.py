@@ -8,6 +8,7 @@ from pathlib import Path
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Step
+from cubeling.app.running.provenance import played
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.session import (
     INSIDE_EVENT,
@@ -35,6 +36,8 @@ class SessionRecording(Closeable):
         Where the frames come from.
     wires
         The bytes of the robots; those of the first one may be exchanged.
+    language
+        Code of the language in which the first character speaks; "" for silence.
     from_within
         Whether it begins after the first frame of the source.
 
@@ -52,6 +55,7 @@ class SessionRecording(Closeable):
         source: FrameSource,
         wires: Sequence[WireTap],
         *,
+        language: str,
         from_within: bool = False,
     ) -> None:
         self.path = path
@@ -60,10 +64,15 @@ class SessionRecording(Closeable):
         self._first: float | None = None
         self._last = 0.0
         self._marks = 0
+        self._mark_s = 0.0
         self._encode = frame_encoder(options.codec, source.size, source.rate)
         own = tuple(each.cube.name for each in playground.players)
         named = replace(options, cubes=(*options.cubes, *own[len(options.cubes) :]))
-        self._recorder = Recorder(path, {**named.metadata(), "rate": f"{source.rate:g}"})
+        self._recorder = Recorder(
+            path,
+            {**named.metadata(), "rate": f"{source.rate:g}"},
+            played(options, playground, source, language),
+        )
         self._live = source.live
         if not from_within:  # with the bytes before the first frame
             self._record_wires(self._recorder)
@@ -118,8 +127,13 @@ class SessionRecording(Closeable):
 
     def mark(self, timestamp: float) -> int:
         """Record the player's next mark, and return its number, from 1."""
-        self._marks += 1
+        self._marks, self._mark_s = self._marks + 1, timestamp
         self.event(f"mark {self._marks}", timestamp)
+        return self._marks
+
+    def name_mark(self, name: str) -> int:
+        """Record what the last mark is, and return its number; see `Mark.of`."""
+        self.event(f"mark {self._marks}: {name}", self._mark_s)
         return self._marks
 
     def flush(self) -> None:

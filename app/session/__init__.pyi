@@ -4,6 +4,14 @@ from cubeling.app.session.frames import (
     FrameEncoder as FrameEncoder,
     frame_encoder as frame_encoder,
 )
+from cubeling.app.session.info import SessionInfo as SessionInfo
+from cubeling.app.session.labels import (
+    Mark as Mark,
+    SessionLabels as SessionLabels,
+    check_participant as check_participant,
+    with_mark as with_mark,
+    write_labels as write_labels,
+)
 from cubeling.app.session.options import (
     SessionOptions as SessionOptions,
     check_stage as check_stage,
@@ -13,7 +21,6 @@ from cubeling.app.session.session_file import (
     INSIDE_EVENT as INSIDE_EVENT,
     START_OVER_EVENT as START_OVER_EVENT,
     SessionFile as SessionFile,
-    SessionInfo as SessionInfo,
     messages as messages,
     session_info as session_info,
 )

@@ -26,6 +26,9 @@ SESSION_RECORD, FORMAT_KEY = "cubeling", "format"
 SESSION_FORMAT = 1
 """The version of the format that is written: all that changed it stands in `_upgrade_content`."""
 
+PLAYED_RECORD = "cubeling played"
+"""Name of a session's metadata that say what is played, resolved."""
+
 CLOCK_RECORD, CLOCK_ZERO = "cubeling clock", "zero_utc"
 """Name of a live session's metadata, and their key: when its timestamps were 0, by ISO 8601."""
 

@@ -144,6 +144,15 @@ class SessionOptions:
     patience_s: float = 30.0
     """How long the session goes on without a picture of a camera that was lost [s]."""
 
+    participant: str = ""
+    """Code of who plays; "" where nobody said."""
+
+    condition: str = ""
+    """The condition of the study; "" for none."""
+
+    notes: str = ""
+    """What the experimenter notes of the session."""
+
     start_s: float = 0.0
     """Where to start in a recording, from its first frame [s]."""
 
@@ -199,6 +208,9 @@ class SessionOptions:
             "look": self.look,
             "inside": self.inside,
             "realism": ",".join(self.realism),
+            "participant": self.participant,
+            "condition": self.condition,
+            "notes": self.notes,
             "source": source.split("://")[0] if "://" in source else Path(source).name,
         }
 
@@ -238,6 +250,9 @@ class SessionOptions:
             look=metadata.get("look", "auto"),
             inside=metadata.get("inside", "auto"),
             realism=tuple(filter(None, realism.split(","))),
+            participant=metadata.get("participant", ""),
+            condition=metadata.get("condition", ""),
+            notes=metadata.get("notes", ""),
         )
 
 

@@ -5,7 +5,7 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from datetime import datetime
 from functools import cache, partial
@@ -29,6 +29,7 @@ from cubeling.app.session.encoding import (
     FORMAT_KEY,
     IMAGE_TOPIC,
     INPUTS_TOPIC,
+    PLAYED_RECORD,
     SESSION_FORMAT,
     SESSION_RECORD,
     WIRE_TOPIC,
@@ -90,20 +91,24 @@ class Recorder(Closeable):
     metadata
         What a replay needs: the scenario, its options, the cube …, see `SessionOptions.metadata`.
 
+    played
+        What is played, resolved, for a reader of the file; none for a session without it.
+
     Raises
     ------
     AppError
         The file cannot be written.
     """
 
-    def __init__(self, path: Path, metadata: dict[str, str]) -> None:
+    def __init__(
+        self, path: Path, metadata: dict[str, str], played: Mapping[str, str] | None = None
+    ) -> None:
         self.path = path
         self.problem: str | None = None
         """Why recording stopped before `close`, or None."""
-        # The name of a file need not be UTF-8.
-        self._metadata = {
-            key: text.encode(errors="replace").decode() for key, text in metadata.items()
-        }
+        self._metadata = {SESSION_RECORD: {FORMAT_KEY: f"{SESSION_FORMAT}", **metadata}}
+        if played:
+            self._metadata[PLAYED_RECORD] = dict(played)
         self._steps = 0
         self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(MAX_QUEUED_WRITES)
         self._channels: dict[str, int] = {}
@@ -251,8 +256,10 @@ class Recorder(Closeable):
     def _start(self) -> None:
         """Write what the session says of itself."""
         self._writer.start(profile="", library="cubeling")
-        metadata = {FORMAT_KEY: f"{SESSION_FORMAT}", **self._metadata}
-        self._writer.add_metadata(SESSION_RECORD, metadata)
+        for record, values in self._metadata.items():
+            # The name of a file need not be UTF-8.
+            text = {key: each.encode(errors="replace").decode() for key, each in values.items()}
+            self._writer.add_metadata(record, text)
         self._file.flush()
 
     def _frame(self, frame: Frame) -> None:

@@ -4,7 +4,7 @@ import json
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import cached_property
 from itertools import groupby
 from operator import itemgetter
@@ -28,6 +28,7 @@ from cubeling.app.session.encoding import (
     INPUTS_TOPIC,
     LINE_TOPIC,
     MESSAGE_TYPES,
+    PLAYED_RECORD,
     SESSION_FORMAT,
     SESSION_RECORD,
     decode,
@@ -37,7 +38,15 @@ from cubeling.app.session.encoding import (
 )
 from cubeling.app.session.file_records import READ_ERRORS, is_whole, metadata_of
 from cubeling.app.session.file_start import open_session_file
+from cubeling.app.session.info import SessionInfo
 from cubeling.app.session.inputs import RecordedInputs
+from cubeling.app.session.labels import (
+    LABEL_NAMES,
+    Mark,
+    SessionLabels,
+    corrected_labels,
+    recorded_marks,
+)
 from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
 from cubeling.characters import CharacterCommand, SpeechIntent
 from cubeling.characters.speech import Samples
@@ -59,23 +68,6 @@ FIELD_OF_TOPIC = {
 
 Message = tuple[str, float, bytes]
 """Topic, timestamp [s] and document of a message."""
-
-
-@dataclass(frozen=True)
-class SessionInfo:
-    """What a recorded session says of itself."""
-
-    options: SessionOptions
-    """Its scenario, cube, character …, with itself as the source."""
-
-    frames: int
-    """Camera frames in the file."""
-
-    duration: float
-    """From the first to the last camera frame [s]; the robot's line may be recorded for longer."""
-
-    clock_zero: str
-    """When the timestamps of a live camera were 0, in UTC by ISO 8601; "" for other sources."""
 
 
 class SessionFile:
@@ -146,7 +138,18 @@ class SessionFile:
         except ValueError as error:
             raise AppError(f"cannot read the session '{self.path}': {error}") from None
         clock_zero = self._metadata.get(CLOCK_RECORD, {}).get(CLOCK_ZERO, "")
-        return SessionInfo(options, frames, seconds, clock_zero)
+        labels = self.labels
+        names = {name: getattr(labels, name) for name in LABEL_NAMES}
+        options = replace(options, **names)
+        played = self._metadata.get(PLAYED_RECORD, {})
+        return SessionInfo(options, frames, seconds, played, labels, clock_zero)
+
+    @cached_property
+    def labels(self) -> SessionLabels:
+        """Who played, as it was corrected since, else as it was said; raises AppError."""
+        about = self._metadata.get(SESSION_RECORD, {})
+        said = (about.get(name, "") for name in LABEL_NAMES)
+        return corrected_labels(self.path, SessionLabels(*said))
 
     def messages(self, *topics: str) -> Iterator[Message]:
         """Yield (topic, timestamp [s], bytes) in the order of the file, for some topics or all.
@@ -236,6 +239,13 @@ class SessionFile:
             with self._named_message(topic, time):
                 found.append((time, str(json.loads(data)["event"])))
         return found
+
+    @cached_property
+    def marks(self) -> tuple[Mark, ...]:
+        """The marked moments in the order of time, those of `labels` too; raises AppError."""
+        first = next(self.messages(IMAGE_TOPIC), ("", 0.0, b""))[1]
+        marks = (*recorded_marks(self.events, first), *self.labels.marks)
+        return tuple(sorted(marks, key=lambda mark: mark.at_s))
 
     @cached_property
     def inputs(self) -> dict[float, RecordedInputs]:

@@ -24,10 +24,10 @@ def complete_session(
     KeyboardInterrupt
         Ctrl-C ended the computation.
     """
-    from cubeling.app.session import SessionFile
+    from cubeling.app.session import SessionFile, write_labels
 
     with SessionFile(path, salvage=salvage) as session:
-        duration, is_complete = session.info.duration, session.has_channels
+        info, is_complete = session.info, session.has_channels
     if is_complete:
         yield path
         return
@@ -37,6 +37,9 @@ def complete_session(
 
     with TemporaryDirectory(prefix="cubeling-") as folder:
         complete = Path(folder) / f"{path.stem}.mcap"
-        with show_progress(f"computing {path.name}", duration, Console(stderr=True)) as progress:
+        with show_progress(
+            f"computing {path.name}", info.duration, Console(stderr=True)
+        ) as progress:
             compute_channels(path, complete, progress, salvage=salvage, appearance=appearance)
+        write_labels(complete, info.labels)  # marks that were made later go with it
         yield complete

@@ -30,6 +30,7 @@ from cubeling.app.commands.play.play_options import (
     CastOption,
     CharacterOption,
     CodecOption,
+    ConditionOption,
     ControllerOption,
     CubesOption,
     FolderOption,
@@ -38,7 +39,9 @@ from cubeling.app.commands.play.play_options import (
     LanguageOption,
     LinesOption,
     MotionsOption,
+    NotesOption,
     OutputOption,
+    ParticipantOption,
     PatienceOption,
     PersonalityOption,
     PicturesOption,
@@ -124,6 +127,9 @@ def play(
     codec: CodecOption = "auto",
     sounds: SoundsOption = None,
     folder: FolderOption = None,
+    participant: ParticipantOption = "",
+    condition: ConditionOption = "",
+    notes: NotesOption = "",
     mqtt: Broker = None,
     player: PlayerName = None,
     site: Site = DEFAULT_SITE,
@@ -180,6 +186,9 @@ def play(
         pictures=pictures,
         sounds=sounds,
         folder=folder,
+        participant=participant,
+        condition=condition,
+        notes=notes,
     )
     check_output_paths(options)
     check_publisher(mqtt, player)

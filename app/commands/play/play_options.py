@@ -20,6 +20,7 @@ DEFAULT_CAMERA = "camera:0"
 
 PICTURE_GROUP = "The picture"
 FILES_GROUP = "Files"
+STUDY_GROUP = "For a study"
 """Headings of the options that matter less, in the help."""
 
 
@@ -183,6 +184,19 @@ CodecOption = Annotated[
         f"{', '.join(list(ENCODERS)[:-1])}.",
         rich_help_panel=FILES_GROUP,
     ),
+]
+ParticipantOption = Annotated[
+    str,
+    typer.Option(
+        help="Code of who plays, as P07: it is recorded, and can be corrected by cubeling label.",
+        rich_help_panel=STUDY_GROUP,
+    ),
+]
+ConditionOption = Annotated[
+    str, typer.Option(help="The condition of the study.", rich_help_panel=STUDY_GROUP)
+]
+NotesOption = Annotated[
+    str, typer.Option(help="A note on the session.", rich_help_panel=STUDY_GROUP)
 ]
 FolderOption = Annotated[
     Path | None,

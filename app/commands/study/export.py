@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -16,7 +15,10 @@ from cubeling.app.output_path import check_output_folder, output_folder
 
 Labels = Annotated[
     list[str] | None,
-    typer.Option(help="A label: once for all sessions, or once for each, in the same order."),
+    typer.Option(
+        help="Instead of what the session says: once for all sessions, or once for each, in the "
+        "same order."
+    ),
 ]
 
 
@@ -55,11 +57,8 @@ def export(
     ]
     with ExitStack() as closing:
         complete = [
-            replace(
-                each,
-                complete=closing.enter_context(
-                    complete_session(each.path, salvage=salvage, appearance=True)
-                ),
+            each.with_channels(
+                closing.enter_context(complete_session(each.path, salvage=salvage, appearance=True))
             )
             for each in exported
         ]

@@ -18,6 +18,11 @@ PLAYER_Z_M = 0.6
 """How far away the point is that they face at first, towards the player [m]."""
 
 
+def seed_of(place: int, name: str) -> int:
+    """Return the seed of a member of a cast, by its place, 0 for the first, and its name."""
+    return zlib.crc32(name.encode()) if place else 0
+
+
 def further_members(
     names: Sequence[str],
     characters: Sequence[Character],
@@ -44,7 +49,7 @@ def further_members(
     waiting = WAITING["waiting"]
     members = []
     for number, (name, character) in enumerate(zip(names, characters, strict=True)):
-        seed = zlib.crc32(name.encode())
+        seed = seed_of(number + 1, name)
         x, z = FURTHER_PLACES_M[number]
         place = RootDelta(x, z, math.atan2(-x, PLAYER_Z_M - z))
         player = number + 1 if number < len(led) else 0

@@ -17,6 +17,7 @@ from cubeling.app.ui.playback.requests import (
     Choose,
     ListChoices,
     MarkMoment,
+    NameMark,
     Pause,
     Record,
     Seek,
@@ -25,6 +26,9 @@ from cubeling.app.ui.playback.requests import (
     StepFrames,
 )
 from cubeling.app.ui.playback.status import EndCard, SessionStatus
+
+NAMING_KEYS = "a digit, or a name and Enter"
+"""How a mark gets a name, once B was pressed."""
 
 
 class PlayerControls:
@@ -51,6 +55,7 @@ class PlayerControls:
                 scenario=session.options.scenario,
                 paused=transport.paused or transport.ended,
                 seeking=transport.seeking,
+                recorded=recording is not None,
                 recording=recording.seconds if recording is not None and by_key else None,
                 position=transport.position,
                 ending=self._ending if transport.ended else None,
@@ -101,7 +106,15 @@ class PlayerControls:
             session.screen.notify("Marks are kept in a recording: R begins one")
             return
         number = session.recording.mark(now)
-        session.screen.notify(f"Mark {number} at {session.recording.seconds:.1f} s")
+        seconds = session.recording.seconds
+        session.screen.notify(f"Mark {number} at {seconds:.1f} s: {NAMING_KEYS}")
+
+    def _name_mark(self, request: NameMark) -> None:
+        """Say what the last mark of the recording is."""
+        recording = self._session.recording
+        if recording is not None:
+            number = recording.name_mark(request.name)
+            self._session.screen.notify(f"Mark {number}: {request.name}")
 
     def _begin_recording(self) -> None:
         session, transport = self._session, self._transport
@@ -134,6 +147,7 @@ HANDLERS: dict[type[SessionRequest], Callable[[PlayerControls, Any], None]] = {
     StepFrames: lambda controls, request: controls._transport.step_frames(request.count),
     Record: PlayerControls._record,
     MarkMoment: PlayerControls._mark,
+    NameMark: PlayerControls._name_mark,
     ChangeSetting: PlayerControls._change_setting,
     ChangeSound: lambda controls, request: controls._session.change_sound(
         request.setting, request.value

@@ -21,10 +21,13 @@ from cubeling.app.ui.playback.announcements import Announcements
 from cubeling.app.ui.playback.cards import draw_ending, draw_keys
 from cubeling.app.ui.playback.corner_buttons import button_at, draw_buttons
 from cubeling.app.ui.playback.keys import find_binding
+from cubeling.app.ui.playback.mark_name import MarkName
 from cubeling.app.ui.playback.menu import MENU_KEYS, Menu
 from cubeling.app.ui.playback.requests import (
     Choose,
     ListChoices,
+    MarkMoment,
+    NameMark,
     OpenCube,
     Pause,
     PlayScenario,
@@ -105,6 +108,8 @@ class PlaybackLayer:
         self._card = ScenarioCard(scenarios)
         self.shows_scenarios = False
         """Whether the card with all scenarios lies over the picture."""
+        self._naming: MarkName | None = None
+        self._clock = clock
         self._pointer: float | None = None
         self._dragging = False
         self._changed = True
@@ -146,6 +151,8 @@ class PlaybackLayer:
     def press(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
         """Handle a key by its name in the table of keys; `repeated` while it is held."""
         self._changed = True
+        if self._naming is not None and self._type(key):
+            return
         if self._menu is not None and key in MENU_KEYS:
             self._request(self._menu.press(key))
             return
@@ -248,6 +255,23 @@ class PlaybackLayer:
             self._requests = [each for each in self._requests if not isinstance(each, SeekTo)]
         self._requests.append(request)
         self._menu = None
+        if isinstance(request, MarkMoment) and self._status.recorded:
+            self._naming = MarkName(self._clock())
+
+    def _type(self, key: str) -> bool:
+        """Let a key say what the last mark is; return whether it did."""
+        naming = self._naming
+        used = naming is not None and naming.press(key, self._clock())
+        if naming is None or not used:
+            self._naming = None  # the key means what it always does
+            return False
+        if naming.done:
+            self._naming = None
+            if naming.text:
+                self._requests.append(NameMark(naming.text))
+        else:
+            self.notify(f"Mark: {naming.text}…")
+        return True
 
     def _seek(self, x: float) -> None:
         position = self._status.position

@@ -80,6 +80,14 @@ class MarkMoment:
 
 
 @dataclass(frozen=True)
+class NameMark:
+    """Say what the last mark is."""
+
+    name: str
+    """A digit, a name, or "TYPE: NAME"."""
+
+
+@dataclass(frozen=True)
 class ListChoices:
     """Find out which cameras, characters and robots there are."""
 
@@ -136,6 +144,7 @@ SessionRequest = (
     | StepFrames
     | Record
     | MarkMoment
+    | NameMark
     | ListChoices
     | Choose
     | ChangeSetting

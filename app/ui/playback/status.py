@@ -78,6 +78,9 @@ class SessionStatus:
     seeking: bool = False
     """Whether frames are processed and not shown, until the one that is sought."""
 
+    recorded: bool = False
+    """Whether it is being recorded, by R or from its start."""
+
     recording: float | None = None
     """How long the recording is that R began [s]; None if there is none."""
 

@@ -20,6 +20,7 @@ KEY_NAMES = {
     glfw.KEY_ENTER: "Enter",
     glfw.KEY_KP_ENTER: "Enter",
     glfw.KEY_TAB: "Tab",
+    glfw.KEY_BACKSPACE: "Backspace",
     glfw.KEY_LEFT: "←",
     glfw.KEY_RIGHT: "→",
     glfw.KEY_UP: "↑",

@@ -1,8 +1,10 @@
 """A column of an export, and a table of columns."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+from cubeling.app.session import SessionFile
 
 Cell = Any
 """A number, text, truth value or None, or in a nested column a list of them."""
@@ -40,6 +42,9 @@ class Table:
 
     columns: tuple[Column, ...]
     """Its own columns, after those of `CONTEXT_COLUMNS`."""
+
+    read: Callable[[SessionFile], Iterable[tuple[float, Any]]] | None = None
+    """Returns times [s] and rows where a row is not a message of the topic; None where it is."""
 
 
 def field(name: str, unit: str, meaning: str, path: str = "", nested: bool = False) -> Column:

@@ -5,11 +5,15 @@ This is the one place that names them: files, data dictionary and docs/exporting
 
 import math
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.session import SessionFile, SessionOptions
+from cubeling.app.session.encoding import IMAGE_TOPIC
 from cubeling.app.workshop.exporting.column import Cell, Column, Table, field, vector
+from cubeling.app.workshop.moods import read_robot_traces
 from cubeling.characters import CharacterCommand, PosedCharacter
 from cubeling.characters.motion import rotations
 from cubeling.tracking import CubeState
@@ -49,15 +53,41 @@ def _yaw(posed: PosedCharacter) -> float:
     return math.atan2(place[0, 2], place[2, 2])
 
 
+def read_robot(session: SessionFile) -> Iterator[tuple[float, Any]]:
+    """Yield what the robot was asked, answered and showed, with its times [s]."""
+    for event in read_robot_traces(session.path).events:
+        yield event.time, event
+
+
+def read_marks(session: SessionFile) -> Iterator[tuple[float, Any]]:
+    """Yield the marked moments, with their times [s]."""
+    first = next(session.messages(IMAGE_TOPIC), ("", 0.0, b""))[1]
+    for mark in session.marks:
+        yield first + mark.at_s, mark
+
+
 CAMERA_AXES = ("to the right", "down", "forward")
 """Axes of the camera frame, as in OpenCV."""
 
 COLOUR_NAMES = ("red", "green", "blue")
 
+
+def played(
+    name: str, meaning: str, asked: Callable[[SessionOptions], Cell] = lambda options: None
+) -> Column:
+    """Return a column of what was played; for older sessions, of what was asked for."""
+    return Column(
+        name,
+        "",
+        f"{meaning}; empty for sessions before version 0.3 that do not say it",
+        lambda info: info.played.get(name) or asked(info.options),
+    )
+
+
 CONTEXT_COLUMNS = (
     Column("session", "", "Name of the session's file, without its suffix", lambda row: row[0]),
-    Column("participant", "", "Label given with --participant", lambda row: row[1]),
-    Column("condition", "", "Label given with --condition", lambda row: row[2]),
+    Column("participant", "", "Code of who played", lambda row: row[1]),
+    Column("condition", "", "The condition of the study", lambda row: row[2]),
     Column("time_s", "s", "Time of the frame by the camera's clock", lambda row: row[3]),
 )
 """The first columns of every table but `sessions`."""
@@ -67,11 +97,25 @@ SESSION_CONTEXT_COLUMNS = CONTEXT_COLUMNS[:-1]
 
 SESSION_COLUMNS = (
     field("scenario", "", "Name of the scenario", "options.scenario"),
-    field("cube", "", "The cube; empty for the scenario's own", "options.cube"),
-    field("character", "", "The character; empty for the scenario's own", "options.character"),
-    field(
-        "personality", "", "The personality; empty for the scenario's own", "options.personality"
+    played("cube", "The cube", lambda options: options.cube),
+    played("cube_folded", "Dictionary, size and faces of the cubes, in JSON"),
+    played("character", "The character", lambda options: options.character),
+    played(
+        "others", "The rest of the cast, a line each", lambda options: "\n".join(options.others)
     ),
+    played("character_sha256", "SHA-256 of the characters' files, a line each"),
+    played("personality", "The personality", lambda options: options.personality),
+    played("controller", "What moved the character", lambda options: options.controller),
+    played("lens", "Whose lens the camera has; its numbers are in the session"),
+    played("robot", "URL of the robot, a line each"),
+    played("driver", "Its protocol, a line each"),
+    played("language", "Code of the language at the beginning; empty for silence"),
+    played("voice", "The voice; empty for silence"),
+    played("seeds", "The seed of each character, in JSON"),
+    played("version", "Version of Cubeling"),
+    played("libraries", "Versions of its libraries"),
+    played("machine", "System and Python"),
+    field("notes", "", "What the experimenter noted", "labels.notes"),
     field("frames", "", "Camera frames"),
     field("duration_s", "s", "From the first to the last camera frame", "duration"),
     field(
@@ -251,6 +295,30 @@ EXPORT_TABLES = (
             field("arousal", "", "From calm, −1, to excited, 1", "emotion.arousal"),
             field("label", "", "The word for the emotion", "emotion.label"),
         ),
+    ),
+    Table(
+        "robot",
+        "/robot/wire",
+        (
+            field("what", "", "commanded, acknowledged or observed for an emotion; asked, taken or "
+                   "refused for an action"),
+            *vector(("valence", "arousal"), "", ("From unpleasant, −1, to pleasant, 1; empty for "
+                    "an action", "From calm, −1, to excited, 1"), lambda event: event.emotion),
+            field("name", "", "The mood's or the action's name, if the robot gave one"),
+            field("number", "", "Number of the command, which its answer repeats"),
+            field("reason", "", "Why it was refused"),
+        ),
+        read_robot,
+    ),
+    Table(
+        "marks",
+        "/events",
+        (
+            field("at_s", "s", "When, from the first frame"),
+            field("kind", "", "The digit that was pressed, or the type that was given"),
+            field("name", "", "What it is"),
+        ),
+        read_marks,
     ),
     Table(
         "events",

@@ -5,14 +5,14 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 
 from cubeling.app.errors import AppError
-from cubeling.app.session import SessionInfo, messages, session_info
+from cubeling.app.session import SessionFile, SessionInfo, session_info
 from cubeling.app.session.encoding import CHANNEL_TYPES, decode
 from cubeling.app.workshop.exporting.column import Cell, Column, Table
 from cubeling.app.workshop.exporting.columns import (
@@ -44,12 +44,6 @@ class ExportedSession:
     info: SessionInfo
     """What it says of itself."""
 
-    participant: str = ""
-    """Who played; "" where nobody said."""
-
-    condition: str = ""
-    """The condition of the study; "" for none."""
-
     complete: Path | None = None
     """The same session with every channel; None if its own file has them."""
 
@@ -57,13 +51,28 @@ class ExportedSession:
     def read(
         cls, path: Path, participant: str = "", condition: str = "", *, salvage: bool = False
     ) -> "ExportedSession":
-        """Read what a session says of itself; raises AppError as `session_info` does."""
-        return cls(path, session_info(path, salvage=salvage), participant, condition)
+        """Read what a session says of itself; raises AppError as `session_info` does.
+
+        A participant or a condition replaces the one that it says.
+        """
+        info = session_info(path, salvage=salvage)
+        labels = replace(
+            info.labels,
+            participant=participant or info.labels.participant,
+            condition=condition or info.labels.condition,
+        )
+        return cls(path, replace(info, labels=labels))
+
+    def with_channels(self, complete: Path) -> "ExportedSession":
+        """Return the same session with a file that has every channel, and says what it plays."""
+        played = self.info.played or session_info(complete, salvage=True).played
+        return replace(self, complete=complete, info=replace(self.info, played=played))
 
     @property
     def labels(self) -> tuple[str, str, str]:
         """The first cells of its rows."""
-        return self.path.stem, self.participant, self.condition
+        labels = self.info.labels
+        return self.path.stem, labels.participant, labels.condition
 
 
 def export(sessions: Sequence[ExportedSession], folder: Path) -> dict[str, int]:
@@ -102,16 +111,26 @@ def _session_rows(sessions: Sequence[ExportedSession]) -> Iterator[list[Cell]]:
 
 def _table_rows(sessions: Sequence[ExportedSession], table: Table) -> Iterator[list[Cell]]:
     for session in sessions:
-        for topic, time, data in messages(session.complete or session.path, table.topic):
-            try:
-                kind = CHANNEL_TYPES.get(topic)
-                message = json.loads(data) if kind is None else decode(kind, data)
-            except ValueError as error:
-                raise AppError(
-                    f"cannot read the session '{session.path}': {topic} at {time:.3f} s: {error}"
-                ) from error
-            cells = [column.value(message) for column in table.columns]
-            yield [*(column.value((*session.labels, time)) for column in CONTEXT_COLUMNS), *cells]
+        with SessionFile(session.complete or session.path) as file:
+            found = _messages(session, file, table) if table.read is None else table.read(file)
+            for time, message in found:
+                cells = [column.value(message) for column in table.columns]
+                context = (*session.labels, time)
+                yield [*(column.value(context) for column in CONTEXT_COLUMNS), *cells]
+
+
+def _messages(
+    session: ExportedSession, file: SessionFile, table: Table
+) -> Iterator[tuple[float, Any]]:
+    """Yield the messages of a table's topic, with their times [s]."""
+    for topic, time, data in file.messages(table.topic):
+        try:
+            kind = CHANNEL_TYPES.get(topic)
+            yield time, json.loads(data) if kind is None else decode(kind, data)
+        except ValueError as error:
+            raise AppError(
+                f"cannot read the session '{session.path}': {topic} at {time:.3f} s: {error}"
+            ) from error
 
 
 def _write(

@@ -48,6 +48,29 @@ class EmotionSteps:
 
 
 @dataclass(frozen=True)
+class RobotEvent:
+    """Something that a robot was asked, answered or showed."""
+
+    time: float
+    """When [s]: for what it showed by its own clock, if it has one."""
+
+    what: str
+    """commanded, acknowledged or observed for an emotion; asked, taken or refused for an action."""
+
+    emotion: tuple[float, float] = UNKNOWN_EMOTION
+    """Valence and arousal; NaN for an action."""
+
+    name: str = ""
+    """The mood's or the action's name; "" if the robot gave none."""
+
+    number: int | None = None
+    """The command's number, which its answer repeats."""
+
+    reason: str = ""
+    """Why it was refused; "" if it was not."""
+
+
+@dataclass(frozen=True)
 class RobotTraces:
     """What a robot acknowledged and showed during a session."""
 
@@ -59,6 +82,9 @@ class RobotTraces:
 
     delays: Array
     """Time from each emotion's command to its acknowledgement, (k,) [s]."""
+
+    events: tuple[RobotEvent, ...] = ()
+    """All that it was asked, answered and showed, in the order of the wire."""
 
     def __bool__(self) -> bool:
         return len(self.observed.times) > 0
@@ -81,7 +107,9 @@ def read_robot_traces(path: Path) -> RobotTraces:
             raise AppError(f"cannot read the session '{path}': /robot/wire: {error}") from error
         decoder.feed(direction, received, time)
     delays = np.array(decoder.delays)
-    return RobotTraces(_steps(decoder.acknowledged), _steps(decoder.observed), delays)
+    return RobotTraces(
+        _steps(decoder.acknowledged), _steps(decoder.observed), delays, tuple(decoder.events)
+    )
 
 
 Row = tuple[float, tuple[float, float], str]
@@ -94,10 +122,12 @@ class _WireDecoder:
         self.acknowledged: list[Row] = []
         self.observed: list[Row] = []
         self.delays: list[float] = []
+        self.events: list[RobotEvent] = []
+        self._asked: dict[int, tuple[str, str]] = {}
         self._readers = {"tx": FrameReader(), "rx": FrameReader()}
         self._commands: dict[int, tuple[float, tuple[float, float]]] = {}
         self._acknowledged: set[int] = set()
-        self._moods: dict[int, str] = {}
+        self._names: dict[tuple[int, int], str] = {}
         self._last_received: float | None = None
         self._version = 1
         self._clock = RobotClock()
@@ -125,13 +155,23 @@ class _WireDecoder:
     def _handle(self, content: Any, time: float) -> None:
         match content:
             case m.Express():
+                mood = self._names.get((m.ITEM_MOOD, content.mood), "")
+                self._ask(content, time, "commanded", mood, (content.valence, content.arousal))
                 self._commands.setdefault(
                     content.number, (time, (content.valence, content.arousal))
                 )
+            case m.Play():
+                name = self._names.get((content.item, content.index), f"{content.index}")
+                self._ask(content, time, "asked", name)
+            case m.Move():
+                self._ask(content, time, "asked", "move")
             case m.Stop():
+                self._ask(content, time, "asked", "stop")
                 self._commands.setdefault(content.number, (time, UNKNOWN_EMOTION))
-            case m.Ack() if content.result == m.RESULT_TAKEN and content.number in self._commands:
-                self._acknowledge(content.number, time)
+            case m.Ack():
+                self._answer(content, time)
+                if content.result == m.RESULT_TAKEN and content.number in self._commands:
+                    self._acknowledge(content.number, time)
             case m.Beat():
                 self._beats[content.count] = time
             case m.Welcome():  # after a reconnection, the last command may still be in force
@@ -140,12 +180,37 @@ class _WireDecoder:
                 self._version, self._clock = content.version, RobotClock()
             case m.Gone() | m.Bye():
                 self.acknowledged.append((time, UNKNOWN_EMOTION, ""))
-            case m.Name() if content.item == m.ITEM_MOOD:
-                self._moods[content.index] = content.name
+            case m.Name():
+                self._names[content.item, content.index] = content.name
             case m.State():
                 emotion = content.valence, content.arousal
-                label = self._moods.get(content.mood, "")
-                self.observed.append((self._time_of(content, time), emotion, label))
+                label = self._names.get((m.ITEM_MOOD, content.mood), "")
+                made = self._time_of(content, time)
+                self.observed.append((made, emotion, label))
+                self.events.append(RobotEvent(made, "observed", emotion, label))
+
+    def _ask(
+        self,
+        command: m.Express | m.Play | m.Move | m.Stop,
+        time: float,
+        what: str,
+        name: str,
+        emotion: tuple[float, float] = UNKNOWN_EMOTION,
+    ) -> None:
+        """Note a command, but not its repetitions."""
+        if self._asked.get(command.number) != (what, name):
+            self._asked[command.number] = what, name
+            self.events.append(RobotEvent(time, what, emotion, name, command.number))
+
+    def _answer(self, answer: m.Ack, time: float) -> None:
+        """Note an answer to a command."""
+        asked, name = self._asked.get(answer.number, ("", ""))
+        if asked:
+            taken = "acknowledged" if asked == "commanded" else "taken"
+            reason = m.REFUSALS.get(answer.result, "")
+            what = taken if answer.result == m.RESULT_TAKEN else "refused"
+            emotion = self._commands.get(answer.number, (0.0, UNKNOWN_EMOTION))[1]
+            self.events.append(RobotEvent(time, what, emotion, name, answer.number, reason))
 
     def _time_of(self, state: m.State, arrival: float) -> float:
         """Return when a STATE was made: by the robot's clock, or when it arrived if it has none."""

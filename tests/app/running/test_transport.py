@@ -17,7 +17,15 @@ from cubeling.app.running.playback.saved_states import FIRST_INTERVAL_S
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, messages, session_info
 from cubeling.app.session.encoding import encode
-from cubeling.app.ui.playback.requests import MarkMoment, Pause, Record, Seek, SeekTo, StepFrames
+from cubeling.app.ui.playback.requests import (
+    MarkMoment,
+    NameMark,
+    Pause,
+    Record,
+    Seek,
+    SeekTo,
+    StepFrames,
+)
 from cubeling.app.workshop.moods.robot_traces import read_robot_traces
 from cubeling.robot.protocol.timing import FAILSAFE_AFTER as FAILSAFE_S
 from cubeling.tracking import Health
@@ -209,15 +217,21 @@ def test_marks_by_key_are_events_of_the_recording(play):
         (5, MarkMoment()),
         (10, Record()),
         (14, MarkMoment()),
+        (16, NameMark("error: fell")),
         (18, MarkMoment()),
         (22, leave),
     )
     player = play(*script, stage="camera")
     (path,) = player.session.recorded
     marks = {name: time for time, name in session_parts.events(path) if name.startswith("mark")}
-    assert marks == {"mark 1": pytest.approx(13 / 30), "mark 2": pytest.approx(17 / 30)}
+    first, second = pytest.approx(13 / 30), pytest.approx(17 / 30)
+    assert marks == {"mark 1": first, "mark 1: error: fell": first, "mark 2": second}
     assert player.notices[0] == "Marks are kept in a recording: R begins one"
-    assert player.notices[2:4] == ["Mark 1 at 0.1 s", "Mark 2 at 0.2 s"]
+    assert player.notices[2:5] == [
+        "Mark 1 at 0.1 s: a digit, or a name and Enter",
+        "Mark 1: error: fell",
+        "Mark 2 at 0.2 s: a digit, or a name and Enter",
+    ]
 
 
 def test_a_recording_of_a_part_is_a_session_of_its_own(cubeling, short_session, tmp_path):

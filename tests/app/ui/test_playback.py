@@ -20,6 +20,7 @@ from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.requests import (
     Choose,
     ListChoices,
+    NameMark,
     OpenCube,
     Pause,
     PlayScenario,
@@ -364,3 +365,24 @@ def test_a_long_notice_stays_in_the_room_of_the_hint(scale):
     assert columns[0] > (1280 - HINT_ROOM) / 2
     assert columns[-1] < (1280 + HINT_ROOM) / 2
     assert columns[-1] - columns[0] > 300
+
+
+@pytest.mark.parametrize(
+    ("keys", "names"),
+    [("2", ["2"]), (["F", "E", "L", "L", "Enter"], ["fell"]), (["F", "Esc"], []), (["Tab"], [])],
+)
+def test_a_mark_gets_a_name_by_the_next_keys(tmp_path, keys, names):
+    desk = Desk(tmp_path)
+    desk.layer.press("B")
+    desk.layer.press("2")  # nothing is recorded: the key plays a scenario
+    assert desk.layer.take_inputs().scenario == "sketch"
+    desk.layer.report(SessionStatus(recorded=True))
+    desk.layer.press("B")
+    for key in keys:
+        desk.layer.press(key)
+    asked = [each.name for each in desk.layer.take_requests() if isinstance(each, NameMark)]
+    assert asked == names
+    desk.layer.press("B")
+    desk.time += 10.0
+    desk.layer.press("2")
+    assert desk.layer.take_inputs().scenario == "sketch"
