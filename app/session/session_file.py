@@ -148,8 +148,8 @@ class SessionFile:
     def labels(self) -> SessionLabels:
         """Who played, as it was corrected since, else as it was said; raises AppError."""
         about = self._metadata.get(SESSION_RECORD, {})
-        said = (about.get(name, "") for name in LABEL_NAMES)
-        return corrected_labels(self.path, SessionLabels(*said))
+        participant, condition, notes = (about.get(name, "") for name in LABEL_NAMES)
+        return corrected_labels(self.path, SessionLabels(participant, condition, notes))
 
     def messages(self, *topics: str) -> Iterator[Message]:
         """Yield (topic, timestamp [s], bytes) in the order of the file, for some topics or all.

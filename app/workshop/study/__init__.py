@@ -1,1 +1,1 @@
-"""Studies with people: how their answers are counted."""
+"""Studies with people: protocols, who takes part, and what is found."""

@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from cubeling.app.preferences import PreferenceStore
+from cubeling.app.session import Mark, SessionLabels, write_labels
 from cubeling.app.sound import write_wave
 from cubeling.app.ui.video_file import VideoFile
 from cubeling.app.workshop.scenario_templates import RULES
@@ -101,6 +102,10 @@ def _writers() -> Iterator[tuple[str, Callable[[Path], object]]]:
     yield "a.fbx", lambda path: path.write_text(arm(), "utf-8")
     yield "profile.toml", SpeechProfile().save
     yield "preferences.toml", _keep_preferences
+    labels = SessionLabels("P1", "calm", "tired", (Mark(0.5, "error", "fell"),))
+    yield "a.labels.toml", lambda path: write_labels(path.with_name("a.mcap"), labels)
+    yield "study.json", lambda path: path.write_text('{"format": 1, "kind": "pilot"}\n', "utf-8")
+    yield "log.jsonl", lambda path: path.write_text(STUDY_LOG, "utf-8")
 
 
 def _write_video(path: Path) -> None:
@@ -114,6 +119,10 @@ def _keep_preferences(path: Path) -> None:
     store.change(panels=("tracking@0.1:0.2",), window_size=(640, 480), volume=0.3)
     store.save()
 
+
+STUDY_LOG = """{"begins": "P1", "number": 0, "kept": [], "at": "2026-05-04T15:03:09.000"}
+{"key": "p/q/easy", "answer": 4.0, "seconds": 2.5, "at": "2026-05-04T15:03:12.000"}
+"""
 
 TEXT = '<begin_gesture id="a" anim="wave"/>Hello<end_gesture id="a"/> you, it is good to see you.'
 

@@ -1,21 +1,18 @@
-"""Comparison mean opinion scores, with the figures of the thesis (section 4.4.6)."""
+"""SampleComparison mean opinion scores, with the figures of the thesis (section 4.4.6)."""
 
 import math
 
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.app.workshop.study.cmos import ANSWER_SCORES, PUBLISHED_THREE_LEVEL, Votes, ranking
+from cubeling.app.workshop.study.bundled.gesture_and_speech import COUNTS as THESIS
+from cubeling.app.workshop.study.reporting.cmos import (
+    ANSWER_SCORES,
+    PUBLISHED_THREE_LEVEL,
+    Votes,
+    ranking,
+)
 
-# 124 answers each. The thesis prints percentages, means and medians; these counts have them.
-THESIS = {
-    ("intensity", "random"): Votes(16, 65, 33, 9, 1),
-    ("intensity", "time"): Votes(21, 63, 16, 21, 3),
-    ("time", "random"): Votes(8, 46, 41, 24, 5),
-    ("intensity", "original"): Votes(3, 17, 30, 44, 30),
-    ("time", "original"): Votes(1, 6, 14, 50, 53),
-    ("random", "original"): Votes(1, 5, 13, 53, 52),
-}
 counts = st.integers(0, 40)
 votes = st.builds(Votes, counts, counts, st.integers(1, 40), counts, counts)
 

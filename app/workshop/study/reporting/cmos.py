@@ -1,4 +1,4 @@
-"""Comparison mean opinion scores: which of two videos suits the speech better.
+"""SampleComparison mean opinion scores: which of two videos suits the speech better.
 
 ITU-T P.800 (1996), annex E, comparison category rating, with five levels instead of seven;
 A. Fernández-Baena (2015), section 4.4.5.

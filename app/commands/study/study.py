@@ -1,0 +1,171 @@
+"""The commands of `cubeling study`."""
+
+import shlex
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from cubeling.app.command_group import CommandGroup
+from cubeling.app.counted import quantity
+from cubeling.app.errors import AppError
+from cubeling.app.output_path import check_output
+from cubeling.files import write_whole
+
+app = CommandGroup("Run a study: orders, tasks, questionnaires, simulated participants, a report.")
+
+MAX_SIMULATED = 2000
+"""Most simulated participants of a study."""
+
+PLAY_GROUP = "How tasks are played"
+
+
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="The .toml file to write.")],
+    like: Annotated[
+        str | None, typer.Option(help="Begin with a bundled protocol instead of the template.")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Overwrite the file.")] = False,
+) -> None:
+    """Write the protocol of a study, which runs as it is, to change it.
+
+    Example: cubeling study new turns.toml
+    """
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    check_output(path, "protocol", (".toml",), overwrite=overwrite)
+    from cubeling.app.workshop.study.protocols.protocol_file import load_protocol, protocol_text
+
+    if like is not None:
+        load_protocol(like)
+    write_whole(path, protocol_text(like).replace("NAME.toml", path.name), AppError)
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(Text.assemble("Written: ", (str(path), "bold")))
+    run = f"cubeling study run {shlex.quote(str(path))} -o trial --simulated 8"
+    console.print(Text.assemble("Try it: ", (run, "cyan")))
+
+
+@app.command()
+def run(
+    protocol: Annotated[str, typer.Argument(help="A .toml file, or the name of a bundled one.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the study.")],
+    participant: Annotated[str, typer.Option(help="Code of who takes part, as P07.")] = "",
+    pilot: Annotated[
+        bool, typer.Option("--pilot", help="Who takes part does not count for the study.")
+    ] = False,
+    simulated: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=MAX_SIMULATED,
+            help="Let so many simulated participants take part, and write the report.",
+        ),
+    ] = 0,
+    source: Annotated[
+        str, typer.Option("--source", "-s", help="The camera.", rich_help_panel=PLAY_GROUP)
+    ] = "camera:0",
+    robot: Annotated[
+        str, typer.Option("--robot", "-r", help="The robot.", rich_help_panel=PLAY_GROUP)
+    ] = "sim",
+    intrinsics: Annotated[
+        Path | None,
+        typer.Option(help="File of the calibrated camera.", rich_help_panel=PLAY_GROUP),
+    ] = None,
+    pictures: Annotated[
+        bool,
+        typer.Option(
+            "--pictures/--no-pictures",
+            help="Whether there is a window.",
+            rich_help_panel=PLAY_GROUP,
+        ),
+    ] = True,
+) -> None:
+    """Lead a participant through a study; who was interrupted goes on where they were.
+
+    Each answer is kept before the next question is asked. See docs/studies.md.
+
+    Example: cubeling study run vleo-and-pleo -o trial --simulated 24
+    """
+    if simulated and (participant or pilot):
+        raise AppError("simulated participants have codes of their own: leave out --participant")
+    if not simulated and not participant:
+        raise AppError("who takes part needs a code: --participant P01, or --simulated 24")
+    if not output.parent.is_dir():
+        raise AppError(f"there is no folder '{output.parent}' for the study '{output.name}'")
+    from cubeling.app.workshop.study.participants.running import run_participant, run_simulated
+    from cubeling.app.workshop.study.participants.study_log import StudyFolder
+    from cubeling.app.workshop.study.protocols.protocol_file import load_protocol
+
+    if simulated:
+        _needs_scipy()
+    loaded, file = load_protocol(protocol)
+    kind = "simulated" if simulated else "pilot" if pilot else "study"
+    study = StudyFolder(output, loaded, file, kind)
+    console = Console(highlight=False, soft_wrap=True)
+    if simulated:
+        run_simulated(study, simulated)
+        _report(output, console)
+        return
+    from datetime import datetime
+
+    from cubeling.app.workshop.study.participants.live_task import TaskSetup
+    from cubeling.app.workshop.study.participants.terminal import TerminalDesk
+
+    log = study.begin(participant, datetime.now())
+    done = len(log.plan) - len(log.left)
+    if done:
+        console.print(Text(f"{participant} goes on after {quantity(done, 'step')}.", "dim"))
+    desk = TerminalDesk(loaded, TaskSetup(source, robot, pictures, intrinsics), console)
+    try:
+        run_participant(loaded, log, desk)
+    except KeyboardInterrupt:
+        again = shlex.join(["cubeling", "study", "run", protocol, "-o", str(output)])
+        console.print(
+            Text(
+                f"\nStopped; all answers are kept. Go on: {again} --participant "
+                f"{shlex.quote(participant)}"
+            )
+        )
+        raise
+    console.print(Text(f"Thank you, {participant}. All answers are kept in {log.folder}"))
+
+
+@app.command()
+def report(
+    folder: Annotated[Path, typer.Argument(help="The folder of a study.")],
+) -> None:
+    """Write the tables of a study, and its report as one page.
+
+    Needs SciPy: pip install "cubeling[study]"
+
+    Example: cubeling study report trial
+    """
+    _needs_scipy()
+    _report(folder, Console(highlight=False, soft_wrap=True))
+
+
+def _needs_scipy() -> None:
+    from importlib.util import find_spec
+
+    if find_spec("scipy") is None:
+        raise AppError('the report of a study needs SciPy: pip install "cubeling[study]"')
+
+
+def _report(folder: Path, console: Console) -> None:
+    from cubeling.app.workshop.study.participants.study_log import participants_in, read_study
+    from cubeling.app.workshop.study.reporting.report import report_page
+    from cubeling.app.workshop.study.reporting.tables import gather, write_tables
+
+    protocol, kind, changed = read_study(folder)
+    data = gather(protocol, kind, participants_in(folder))
+    if not data.tables["answers"] and not data.tables["tasks"]:
+        raise AppError(f"nobody has answered anything in '{folder}' yet: cubeling study run")
+    page = report_page(data, changed)
+    write_tables(data, folder)
+    write_whole(folder / "report.html", page, AppError)
+    people = quantity(len(data.people), "participant")
+    kind_words = "" if kind == "study" else f" ({kind})"
+    console.print(Text(f"{people}{kind_words}, {quantity(len(data.tables['answers']), 'answer')}"))
+    console.print(Text.assemble((str(folder / "report.html"), "bold"), " and tables as .csv"))

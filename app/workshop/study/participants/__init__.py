@@ -1,0 +1,1 @@
+"""Who takes part: the log of each, at a terminal or simulated."""

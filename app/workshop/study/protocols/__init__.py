@@ -1,0 +1,1 @@
+"""What a study is: its protocol, orders, goals and questionnaires."""

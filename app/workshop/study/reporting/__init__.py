@@ -1,0 +1,1 @@
+"""What a study found: tidy tables, statistics, and a report."""
