@@ -41,6 +41,12 @@ from cubeling.app.ui.window import Window
 from cubeling.app.workshop.latency.pattern import draw_pattern
 from cubeling.app.workshop.motion_graphs.timeline import save_timeline
 from cubeling.app.workshop.motion_graphs.transition import find_transitions
+from cubeling.app.workshop.pages.box_plot import box_plot
+from cubeling.app.workshop.pages.page import STYLE
+from cubeling.app.workshop.study.participants.running import run_simulated
+from cubeling.app.workshop.study.participants.study_log import StudyFolder
+from cubeling.app.workshop.study.protocols.protocol_file import protocol_text, read_protocol
+from cubeling.app.workshop.study.reporting.tables import gather
 from cubeling.characters import Character
 from cubeling.characters.model.motion_library import library_of
 from cubeling.characters.rendering import create_context
@@ -241,6 +247,26 @@ UNPLUGGED_ROBOT = "sim:cubeling?unplug=12s/1s&seed=3"
 """A simulated robot that is unplugged twice during the session of the mood plot."""
 
 
+def draw_study() -> None:
+    """Plot the times of simulated participants of the study that `cubeling study new` writes."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "turns.toml"
+        path.write_text(protocol_text(None), "utf-8")
+        study = StudyFolder(Path(folder) / "trial", read_protocol(path), path, "simulated")
+        run_simulated(study, 8)
+        rows = gather(study.protocol, "simulated", study.people).tables["tasks"]
+    times = [
+        (name, [row["time_s"] for row in rows if row["condition"] == name])
+        for name in study.protocol.conditions
+    ]
+    plot = box_plot(times, "simulated participants: time until the robot is happy [s]", (0.0, 30.0))
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="720" height="132"><style>{STYLE}</style>'
+    )
+    drawn = plot.replace("<svg ", '<svg width="720" height="132" ')
+    (FOLDER / "study-times.svg").write_text(f"{head}{drawn}</svg>\n", "utf-8")
+
+
 def draw_moods() -> None:
     """Plot a session with three personalities, and one whose robot was unplugged."""
     compared = FOLDER / "mood-personalities.svg"
@@ -335,6 +361,7 @@ if __name__ == "__main__":
     draw_calibration()
     draw_pattern_of_latency()
     draw_moods()
+    draw_study()
     draw_transition()
     draw_gestures()
     draw_gesture_editor()
