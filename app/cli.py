@@ -63,6 +63,10 @@ GROUPS = {
     "Look": {
         "doctor": "Check what this computer has, and show the commands that install what is "
         "missing.",
+        "inspect": "Show what is in a file: of a session its rates, gaps, tracking, actions, "
+        "emotion, link.",
+        "diff": "Show what differs between two sessions: what was played, their figures, their "
+        "channels.",
         "character": "Inspect characters and motions, and make clips to walk with.",
         "latency": "Measure how late the picture is, with your own screen and camera.",
     },

@@ -34,7 +34,7 @@ def box_plot(
         Where the axis begins and ends; None for what the values need.
     """
     everything = [value for _, values in groups for value in values]
-    low, high, ticks = _axis(everything, span)
+    low, high, ticks = axis(everything, span)
     height = ROW * len(groups) + BELOW
     scale = (WIDTH - LEFT - RIGHT) / (high - low)
 
@@ -81,10 +81,10 @@ def _box(values: NDArray[np.float64], x: Callable[[float], float], y: float) -> 
     return parts
 
 
-def _axis(
+def axis(
     values: Sequence[float], span: tuple[float, float] | None
 ) -> tuple[float, float, list[float]]:
-    """Return where an axis begins and ends, and its ticks."""
+    """Return where an axis begins and ends, and its ticks, for values or a span."""
     low, high = span or (min(values, default=0.0), max(values, default=1.0))
     if high - low < 1e-9:
         low, high = low - 0.5, high + 0.5

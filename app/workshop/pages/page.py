@@ -1,5 +1,6 @@
 """A report as one page of HTML that needs nothing else: no scripts, no other files."""
 
+import base64
 from collections.abc import Sequence
 from html import escape
 
@@ -38,17 +39,24 @@ th, td {
 th:first-child, td:first-child {
   text-align: left; padding-left: 0; white-space: normal; min-width: 9rem;
 }
+.words td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.words td:first-child { font-weight: 600; min-width: 8rem; overflow-wrap: normal; }
 thead th { border-bottom: 2px solid var(--ink); font-weight: 600; }
 .note { color: var(--quiet); font-size: .9rem; margin: .25rem 0 1rem; }
 svg { width: 100%; max-width: 45rem; height: auto; display: block; margin: .5rem 0; }
 svg text { font: 13px system-ui, sans-serif; fill: var(--ink); }
 svg .tick { text-anchor: middle; fill: var(--quiet); }
 svg .name { text-anchor: end; }
+svg .title { font-weight: 600; }
+svg .band { fill: #f3c9c4; }
 svg .grid { stroke: var(--line); }
 svg .whisker { stroke: var(--dark); stroke-width: 1.5; }
 svg .box { fill: var(--box); stroke: var(--dark); }
 svg .median { stroke: var(--dark); stroke-width: 3; }
 svg .point { fill: var(--dark); fill-opacity: .45; }
+.pictures { display: flex; flex-wrap: wrap; gap: .5rem; }
+.pictures figure { margin: 0; font-size: .85rem; color: var(--quiet); }
+.pictures img { display: block; width: 14rem; border-radius: 4px; }
 @media print {
   body { margin: 0; max-width: none; }
   h2 { break-after: avoid; }
@@ -84,15 +92,32 @@ def items(lines: Sequence[str]) -> str:
     return "<ul>" + "".join(f"<li>{escape(line)}</li>" for line in lines) + "</ul>"
 
 
-def table(content: ReportTable) -> str:
-    """Return a table that scrolls by itself where it is wider than the page."""
+def table(content: ReportTable, *, words: bool = False) -> str:
+    """Return a table that scrolls by itself where it is wider than the page.
+
+    With `words`, its cells are texts that wrap, not figures.
+    """
     head = "".join(f'<th scope="col">{escape(column)}</th>' for column in content.columns)
+    if not any(content.columns):
+        head = ""
     body = "".join(
         "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
         for row in content.rows
     )
+    kind = ' class="words"' if words else ""
     note = paragraph(content.note, "note") if content.note else ""
     return (
-        f'<div class="wide"><table><caption>{escape(content.title)}</caption>'
+        f'<div class="wide"><table{kind}><caption>{escape(content.title)}</caption>'
         f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>{note}"
     )
+
+
+def pictures(shown: Sequence[tuple[bytes, str]]) -> str:
+    """Return JPEG pictures with their captions, which the page holds itself."""
+    figures = "".join(
+        f'<figure><img alt="{escape(caption, quote=True)}" '
+        f'src="data:image/jpeg;base64,{base64.b64encode(data).decode()}">'
+        f"<figcaption>{escape(caption)}</figcaption></figure>"
+        for data, caption in shown
+    )
+    return f'<div class="pictures">{figures}</div>'

@@ -1,0 +1,1 @@
+"""What is in a recorded session, and what differs between two."""
