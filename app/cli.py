@@ -50,6 +50,7 @@ GROUPS = {
         "dictionary.",
         "label": "Say who played a recorded session, and mark moments in it; the recording "
         "stays as it was.",
+        "anonymise": "Blur the pictures of a session outside the cubes and the table around them.",
         "study": "Run a study: orders, tasks, questionnaires, simulated participants, a report.",
         "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
         "speech": "Look at recorded speech: its pitch, accents, words and phones.",

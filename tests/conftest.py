@@ -92,7 +92,7 @@ def computed_session(tmp_path_factory: pytest.TempPathFactory) -> ComputedSessio
     """Return a bundled recording with every channel; the first process that asks computes it."""
     from cubeling.app.running.computing import compute_channels
     from cubeling.app.session.bundled import bundled_session
-    from tools.session_copy import copy_session
+    from cubeling.app.session.copying import copy_session
 
     folder = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:

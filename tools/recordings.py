@@ -15,7 +15,7 @@ from cubeling.app.commands.play.progress import run_with_progress
 from cubeling.app.running.opening import open_session
 from cubeling.app.session import SessionOptions
 from cubeling.app.session.bundled import RECORDED_SCENARIOS
-from tools.session_copy import keep_inputs
+from cubeling.app.session.copying import keep_inputs
 
 FOLDER = Path(__file__).parent.parent / "recordings"
 

@@ -16,8 +16,12 @@ CODECS = Registry[Callable[[tuple[int, int], float], Any]](
 """What makes a `FrameEncoder` for a size [px] and a rate [frames/s]."""
 
 
+NO_VIDEO = "none"
+"""The codec of a recording that holds all but the camera's pictures: `--no-video` names it."""
+
+
 def check_codec(codec: str) -> None:
     """Raise AppError if there is no such codec."""
-    if codec not in CODECS:
+    if codec not in CODECS and codec != NO_VIDEO:
         known = ", ".join(CODECS)
         raise AppError(f"a session cannot hold '{codec}' pictures: choose one of {known}")

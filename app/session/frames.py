@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from cubeling.app.errors import AppError
-from cubeling.app.session.codecs import CODECS, check_codec
+from cubeling.app.session.codecs import CODECS, NO_VIDEO, check_codec
 from cubeling.tracking import Frame
 
 FrameEncoder = Callable[[Frame], Frame]
@@ -48,6 +48,8 @@ def frame_encoder(codec: str, size: tuple[int, int], rate: float) -> FrameEncode
         There is no such codec, or it cannot encode pictures of this size.
     """
     check_codec(codec)
+    if codec == NO_VIDEO:
+        return _black_encoder(size)
     encoder: FrameEncoder = CODECS[codec](size, rate)
     return encoder
 
@@ -76,6 +78,12 @@ def encode_jpeg(frame: Frame) -> Frame:
     return dataclasses.replace(
         frame, image=np.asarray(image, np.uint8), encoded=data.tobytes(), encoding="jpeg"
     )
+
+
+def _black_encoder(size: tuple[int, int]) -> FrameEncoder:
+    """Return an encoder that records black pictures, while the tracker sees the camera's."""
+    black = cv2.imencode(".jpg", np.zeros((size[1], size[0], 3), np.uint8))[1].tobytes()
+    return lambda frame: dataclasses.replace(frame, encoded=black, encoding="jpeg")
 
 
 class H264Encoder:

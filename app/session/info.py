@@ -27,5 +27,8 @@ class SessionInfo:
     labels: SessionLabels
     """Who played, and under which condition, as it was corrected since."""
 
+    has_video: bool
+    """Whether its pictures are those of the camera; else it is replayed from where the cube was."""
+
     clock_zero: str
     """When the timestamps of a live camera were 0, in UTC by ISO 8601; "" for other sources."""

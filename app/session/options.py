@@ -7,6 +7,7 @@ from typing import Self
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import REALISM_CHOICES, ROBOT_NAMES, checked_players
+from cubeling.app.session.codecs import NO_VIDEO
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
 START_STAGES = ("camera", "state", "controls", "appearance", "command", "pose")
@@ -208,6 +209,7 @@ class SessionOptions:
             "look": self.look,
             "inside": self.inside,
             "realism": ",".join(self.realism),
+            "video": "no" if self.codec == NO_VIDEO else "yes",
             "participant": self.participant,
             "condition": self.condition,
             "notes": self.notes,

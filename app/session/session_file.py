@@ -142,7 +142,8 @@ class SessionFile:
         names = {name: getattr(labels, name) for name in LABEL_NAMES}
         options = replace(options, **names)
         played = self._metadata.get(PLAYED_RECORD, {})
-        return SessionInfo(options, frames, seconds, played, labels, clock_zero)
+        has_video = about.get("video", "yes") != "no"
+        return SessionInfo(options, frames, seconds, played, labels, has_video, clock_zero)
 
     @cached_property
     def labels(self) -> SessionLabels:

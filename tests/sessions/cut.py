@@ -13,10 +13,10 @@ import cv2
 import numpy as np
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 
+from cubeling.app.session.copying import copy_session
 from cubeling.app.session.encoding import IMAGE_TOPIC
 from cubeling.app.session.frames import H264Encoder
 from cubeling.tracking import open_source
-from tools.session_copy import copy_session
 
 SIZE = (320, 180)
 SECONDS = 2.0

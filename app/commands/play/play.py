@@ -54,6 +54,7 @@ from cubeling.app.commands.play.play_options import (
     ScenarioArgument,
     SoundsOption,
     SourceOption,
+    VideoOption,
     codecs_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
@@ -130,6 +131,7 @@ def play(
     participant: ParticipantOption = "",
     condition: ConditionOption = "",
     notes: NotesOption = "",
+    video: VideoOption = True,
     mqtt: Broker = None,
     player: PlayerName = None,
     site: Site = DEFAULT_SITE,
@@ -145,7 +147,7 @@ def play(
     check_scenario(scenario)
     check_controller(controller)
     from cubeling.app.running.option_checks import check_inputs, check_output_paths
-    from cubeling.app.session import SessionOptions
+    from cubeling.app.session import NO_VIDEO, SessionOptions
 
     record_codec, video_codec = codecs_of(codec, record, output)
     character, others = cast_of(cast, character)
@@ -179,7 +181,7 @@ def play(
         robot_names=robot_names,
         robot_settings=robot_settings,
         record=record,
-        codec=record_codec,
+        codec=record_codec if video else NO_VIDEO,
         video_codec=video_codec,
         output=output,
         overwrite=overwrite,

@@ -195,6 +195,14 @@ ParticipantOption = Annotated[
 ConditionOption = Annotated[
     str, typer.Option(help="The condition of the study.", rich_help_panel=STUDY_GROUP)
 ]
+VideoOption = Annotated[
+    bool,
+    typer.Option(
+        "--video/--no-video",
+        help="Whether recordings hold the camera's pictures; all else is recorded anyway.",
+        rich_help_panel=STUDY_GROUP,
+    ),
+]
 NotesOption = Annotated[
     str, typer.Option(help="A note on the session.", rich_help_panel=STUDY_GROUP)
 ]

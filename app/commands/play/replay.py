@@ -181,6 +181,10 @@ def replay(
         (robot, second_robot), robot_names = robots_of(
             robots or (), recorded.players, recorded.robot_names
         )
+        if not info.has_video:
+            if check:
+                raise AppError(f"'{session}' was recorded without video: nothing can be checked")
+            stage = "state" if stage == "camera" else stage
         options = replace(
             recorded,
             scenario=scenario or recorded.scenario,

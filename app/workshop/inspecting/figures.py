@@ -39,7 +39,7 @@ class Spell:
 
 
 @dataclass(frozen=True)
-class Channel:
+class ChannelFigures:
     """How much there is on a channel."""
 
     topic: str
@@ -84,7 +84,7 @@ class SessionFigures:
     size: int
     """Size of its file [bytes]."""
 
-    channels: tuple[Channel, ...]
+    channels: tuple[ChannelFigures, ...]
     intervals: Array
     """Between frames [s]."""
 
@@ -219,7 +219,7 @@ def _read(session: SessionFile, topic: str, kind: type[Any]) -> list[tuple[float
     return [(time, message) for _, time, message in session.decode_messages({topic: kind})]
 
 
-def _channels(session: SessionFile) -> Iterator[Channel]:
+def _channels(session: SessionFile) -> Iterator[ChannelFigures]:
     counts: Counter[str] = Counter()
     sizes: Counter[str] = Counter()
     for topic, _, data in session.messages():
@@ -227,7 +227,7 @@ def _channels(session: SessionFile) -> Iterator[Channel]:
         sizes[topic] += len(data)
     seconds = max(session.info.duration, 1e-9)
     for topic in sorted(counts):
-        yield Channel(topic, counts[topic], sizes[topic], counts[topic] / seconds)
+        yield ChannelFigures(topic, counts[topic], sizes[topic], counts[topic] / seconds)
 
 
 def _gaps(frames: Array) -> tuple[Spell, ...]:

@@ -120,8 +120,9 @@ def page_of(figures: SessionFigures, session: Path) -> str:
 def _parts(figures: SessionFigures, session: Path) -> Iterator[str]:
     yield heading(figures.name, 1)
     yield table(ReportTable("In short", ("", ""), tuple(lines_of(figures))), words=True)
-    yield heading("Pictures")
-    yield pictures(list(_thumbnails(figures, session)))
+    if figures.info.has_video:
+        yield heading("Pictures")
+        yield pictures(list(_thumbnails(figures, session)))
     yield heading("Over time")
     lost = [(each.at_s, each.at_s + each.seconds) for each in figures.lost]
     if len(figures.emotion):
@@ -215,7 +216,7 @@ def _link_line(figures: SessionFigures) -> str:
     )
 
 
-def _number(value: float) -> float | None:
+def _number(value: float | np.floating[Any]) -> float | None:
     return round(float(value), 6) if math.isfinite(value) else None
 
 

@@ -16,12 +16,12 @@ from cubeling.app.session import (
     messages,
     session_info,
 )
+from cubeling.app.session.copying import INPUT_TOPICS, copy_session, keep_inputs
 from cubeling.app.session.encoding import INPUTS_TOPIC
 from cubeling.app.speaking.recorded import RecordedSpeaker
 from cubeling.app.ui.screen import NullScreen
 from tests.app import session_parts
 from tests.app.conftest import SHORT_FRAMES
-from tools.session_copy import INPUT_TOPICS, copy_session, keep_inputs
 
 SPOKEN = Path(tests.sessions.__path__[0]) / "spoken.mcap"
 

@@ -1,15 +1,20 @@
-"""Copying a part of a session's messages to another file, byte for byte."""
+"""Copying the messages of a session to another file: byte for byte, or changed."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 from mcap.reader import SeekingReader
 from mcap.writer import Writer
+from mcap_protobuf.schema import register_schema
 
+from cubeling.app.errors import AppError
 from cubeling.app.session.encoding import IMAGE_TOPIC, INPUTS_TOPIC, LINE_TOPIC, encode
+from cubeling.app.session.file_start import open_session_file
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.app.session.recorder import CHUNK_BYTES, json_schema
 from cubeling.app.session.session_file import SessionFile
+from cubeling.files import whole_file
 
 INPUT_TOPICS = (IMAGE_TOPIC, "/camera/calibration", INPUTS_TOPIC, LINE_TOPIC, "/events")
 """The channels of what came in, besides the sound of what further characters say."""
@@ -34,7 +39,12 @@ def _came_in(topic: str) -> bool:
 
 
 def copy_session(
-    session: Path, path: Path, change: Change, added: Mapping[float, RecordedInputs] | None = None
+    session: Path,
+    path: Path,
+    change: Change,
+    added: Mapping[float, RecordedInputs] | None = None,
+    *,
+    pictures: type[Any] | None = None,
 ) -> None:
     """Copy the metadata and messages of a complete session.
 
@@ -43,16 +53,23 @@ def copy_session(
     session
         The session to read.
     path
-        The .mcap file to write.
+        The .mcap file to write; it is whole or not there.
     change
         What becomes of each message.
     added
         Inputs to add, by the time of their frame [s].
+    pictures
+        The Protobuf message that `change` makes of pictures; None for that of the session.
     """
     added = added or {}
-    with session.open("rb") as source, path.open("wb") as file:
+    with (
+        open_session_file(session) as source,
+        whole_file(path, AppError) as partial,
+        partial.open("wb") as file,
+    ):
         writer, ids = Writer(file, chunk_size=CHUNK_BYTES), dict[str, int]()
         writer.start(profile="", library="cubeling")
+        source.seek(0)
         for record in SeekingReader(source).iter_metadata():
             writer.add_metadata(record.name, record.metadata)
         source.seek(0)
@@ -64,8 +81,12 @@ def copy_session(
                 continue
             if channel.topic not in ids:
                 form = (schema.name, schema.encoding, schema.data) if schema else ("", "", b"")
+                if channel.topic == IMAGE_TOPIC and pictures is not None:
+                    schema_id = register_schema(writer, pictures)
+                else:
+                    schema_id = writer.register_schema(*form)
                 ids[channel.topic] = writer.register_channel(
-                    channel.topic, channel.message_encoding, writer.register_schema(*form)
+                    channel.topic, channel.message_encoding, schema_id
                 )
             writer.add_message(ids[channel.topic], message.log_time, data, message.publish_time)
             if channel.topic == IMAGE_TOPIC and time in added:
