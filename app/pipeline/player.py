@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.cast.further_members import distinct_names
+from cubeling.app.pipeline.choices import distinct_names
 from cubeling.app.pipeline.step import PlayerStep
 from cubeling.app.pipeline.table.obstacles import Obstacles
 from cubeling.app.pipeline.tracked_cube import TrackedCube
