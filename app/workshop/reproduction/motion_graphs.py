@@ -4,7 +4,12 @@ from pathlib import Path
 
 from cubeling.app.errors import AppError
 from cubeling.app.workshop.motion_graphs.recordings import gather
-from cubeling.app.workshop.motion_graphs.summary import TITLES, printed_value, summarize
+from cubeling.app.workshop.motion_graphs.summary import (
+    TITLES,
+    Estimate,
+    printed_value,
+    summarize,
+)
 from cubeling.app.workshop.motion_graphs.tables import AS_PRINTED, OURS, Measurement, measure
 from cubeling.app.workshop.reproduction.registry import Progress
 from cubeling.app.workshop.reproduction.result import Reproduction, ResultTable
@@ -47,7 +52,7 @@ def reproduce(folder: Path | None, progress: Progress) -> Reproduction:
         rows = []
         for key, cells in found.cells.items():
             if key[0] == name:
-                ours = (f"{cells[way].text} {cells[way].spread}".strip() for way in found.ways)
+                ours = (_with_spread(cells[way]) for way in found.ways)
                 rows.append((f"{key[1]} {key[2]}", printed_value(key), *ours))
         tables.append(ResultTable(title, ("", "printed", *found.ways), tuple(rows)))
     orders = ". ".join(found.order(way).capitalize() for way in found.ways)
@@ -58,3 +63,7 @@ def reproduce(folder: Path | None, progress: Progress) -> Reproduction:
         "The clips of the thesis are not public, and thresholds depend on clips and convention: "
         f"ours are the printed multiples of the first that joins all clips. {orders}.",
     )
+
+
+def _with_spread(estimate: Estimate) -> str:
+    return f"{estimate.text} ({estimate.spread})" if estimate.spread else estimate.text

@@ -81,7 +81,8 @@ def _section(attempt: Attempt) -> str:
     table, found = attempt.table, attempt.found
     head = f"<h2 id={table.name}>{escape(table.title)}<small>{escape(table.source)}</small></h2>"
     if found is None:
-        return f"{head}<p class=missing>Not made: {escape(attempt.refusal)}.</p>"
+        reason = attempt.refusal.removeprefix(f"{table.name}: ")
+        return f"{head}<p class=missing>Not made: {escape(reason)}.</p>"
     rows = "".join(_html_table(each) for each in found.tables)
     return (
         f"{head}{rows}<p><b>Made from</b> {escape(found.data)}.</p>"
