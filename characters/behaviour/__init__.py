@@ -1,4 +1,4 @@
-"""Behaviour: symbolic gestures, reaching, and the blocks of the Behavior Markup Language."""
+"""Behaviour: gestures, reaching, dialogue, and the blocks of the Behavior Markup Language."""
 
 from cubeling.faces import face
 

@@ -84,3 +84,20 @@ from cubeling.characters.behaviour.symbolic_gesture import (
     Place as Place,
     SymbolicGesture as SymbolicGesture,
 )
+from cubeling.characters.dialogue.kernel import (
+    Dialogue as Dialogue,
+    Turn as Turn,
+    heard_of as heard_of,
+)
+from cubeling.characters.dialogue.reading import (
+    SCRIPT_FILE as SCRIPT_FILE,
+    read_script as read_script,
+)
+from cubeling.characters.dialogue.script import DialogueScript as DialogueScript
+from cubeling.characters.dialogue.vocabulary import (
+    CORE as CORE,
+    ConditionKind as ConditionKind,
+    Vocabulary as Vocabulary,
+    act as act,
+    only_text as only_text,
+)

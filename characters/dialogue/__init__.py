@@ -1,0 +1,1 @@
+"""Dialogue: parallel state machines that answer what is said to a character."""
