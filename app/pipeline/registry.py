@@ -25,6 +25,7 @@ BUNDLED = {
     "sketch:Sketch": "the cube draws a path of up to eight points, and the character walks it",
     "companion:Companion": "Vleo kisses or shouts, and changes the robot's mood",
     "reach:Reach": "the character reaches for the cube, and brings small things to it",
+    "talk:Talk": "Vleo talks with you about dinosaurs and feelings: type in the window",
 }
 """The bundled scenarios; a new one is registered here. Each is the module in `app.scenarios`, which
 gives the scenario its name, with its class; then comes what it is, for the help of the command
@@ -45,11 +46,20 @@ SUMMARIES = {place.partition(":")[0]: summary for place, summary in BUNDLED.item
 RULES_SUFFIX = ".toml"
 """Ending of a scenario that is a file of rules: see `cubeling.app.scenarios.rules`."""
 
+SCRIPT_SUFFIX = ".xml"
+"""Ending of a scenario that is a dialogue: see `cubeling.app.scenarios.dialogue`."""
+
 _RULES = "cubeling.app.scenarios.rules"
-FILES = Registry[Callable[[str], "Any"]](
-    {"check": f"{_RULES}.file:read_rules", "load": f"{_RULES}.scenario:rules_scenario"}
+_DIALOGUE = "cubeling.app.scenarios.dialogue.scenario:dialogue_scenario"
+CHECKS = Registry[Callable[[str], "Any"]](
+    {RULES_SUFFIX: f"{_RULES}.file:read_rules", SCRIPT_SUFFIX: _DIALOGUE}
 )
-"""What reads a file of rules, and what makes a scenario of it: the latter loads numpy."""
+"""What reads a file that is a scenario, by its suffix, to refuse what cannot be played."""
+
+FILES = Registry[Callable[[str], "Any"]](
+    {RULES_SUFFIX: f"{_RULES}.scenario:rules_scenario", SCRIPT_SUFFIX: _DIALOGUE}
+)
+"""What makes a scenario of it; that of rules loads numpy."""
 
 
 @cache
@@ -77,13 +87,13 @@ def scenario_names() -> tuple[str, ...]:
 
 
 def find_scenario(name: str) -> type[Scenario]:
-    """Return the class of a scenario, by its name or the path of a file of rules.
+    """Return the class of a scenario, by its name or the path of a file.
 
     Raises AppError if there is none of that name, if two packages add one, or if the package that
     adds it or the file is broken.
     """
-    if name.endswith(RULES_SUFFIX):
-        return cast("type[Scenario]", FILES["load"](name))
+    if (suffix := Path(name).suffix) in FILES:
+        return cast("type[Scenario]", FILES[suffix](name))
     point = _entry_point(name)
     return SCENARIOS[name] if point is None else _load(point)
 
@@ -91,10 +101,10 @@ def find_scenario(name: str) -> type[Scenario]:
 def check_scenario(name: str) -> None:
     """Raise AppError if there is no scenario of a name, or if two packages add one; load none.
 
-    A file of rules is read, which takes milliseconds.
+    A file is read, which takes milliseconds.
     """
-    if name.endswith(RULES_SUFFIX):
-        FILES["check"](name)
+    if (suffix := Path(name).suffix) in CHECKS:
+        CHECKS[suffix](name)
     else:
         _entry_point(name)
 
@@ -114,7 +124,8 @@ def _entry_point(name: str) -> EntryPoint | None:
     if not packages:
         known = ", ".join(scenario_names())
         raise AppError(
-            f"no scenario is called '{name}': choose one of {known}, or a .toml file of rules"
+            f"no scenario is called '{name}': choose one of {known}, or a .toml file of rules, "
+            "or the .xml file of a dialogue"
         )
     if len(packages) > 1:
         raise AppError(
@@ -160,6 +171,7 @@ def make_scenario(
     speed_map: str = "corrected",
     turns: float = 2.0,
     personality: str | None = None,
+    language: str = "",
 ) -> Scenario:
     """Make a scenario by name; without a cube and a personality it has its own bundled ones.
 
@@ -172,7 +184,7 @@ def make_scenario(
     from cubeling.tracking import CubeModel
 
     loaded = None if personality is None else Personality.load(personality)
-    settings = ScenarioSettings(speed_map, turns, loaded)
+    settings = ScenarioSettings(speed_map, turns, loaded, language)
     scenario = find_scenario(name)
     model = cube or CubeModel.load(scenario.cube)
     with scenario_errors(scenario):

@@ -32,6 +32,12 @@ class Inputs:
     inside: bool = False
     """Whether the player asked to open the cube, with the character in it, or to close it."""
 
+    typed: str = ""
+    """What the player says to the character: a line that is complete; "" for nothing."""
+
+    hush: bool = False
+    """Whether the player interrupts the character, as by beginning to type."""
+
     lines_of_others: Lines = field(default_factory=dict)
     """What the rest of the cast wants to say from this frame on, by their names."""
 
@@ -50,6 +56,20 @@ class Inputs:
     def events(self) -> tuple[str, ...]:
         """What happens besides gestures; personalities say what it means to the robot."""
         return () if self.line is None else ("spoken",)
+
+
+@dataclass(frozen=True)
+class Reply:
+    """Something that a character wants to say: a voice speaks it, and it begins in a later frame.
+
+    It takes the place of what was to be said before.
+    """
+
+    text: str
+    """What is said; tags name gestures."""
+
+    language: str
+    """Code of its language."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +94,7 @@ class Outcome:
     """What the robot shows, and the character's face and posture too."""
 
     hint: str
-    """What the player can do now, in one short sentence."""
+    """What the player can do now, or has just said, in one short sentence."""
 
     icon: str = "idle"
     """The current action or gait: the title of its card, which shows its icon if it has one."""
@@ -87,6 +107,12 @@ class Outcome:
 
     things: tuple[Thing, ...] = ()
     """Small things on the table, or in the character's hands."""
+
+    reply: Reply | None = None
+    """What it wants to say now; None for nothing new."""
+
+    hush: bool = False
+    """Whether what is being said, or was to be said, is cut off now."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +127,9 @@ class ScenarioSettings:
 
     personality: Personality | None = None
     """How events change the mood; None for the scenario's own personality."""
+
+    language: str = ""
+    """Code of the language in which a dialogue begins; "" for its first one."""
 
     def __post_init__(self) -> None:
         check_speed_map(self.speed_map)
@@ -159,6 +188,14 @@ class AskingScenario(Protocol):
 
     asked: Mapping[str, str]
     """The place that names each action, such as "my.toml: rule[0].do", by the action."""
+
+
+@runtime_checkable
+class ListeningScenario(Protocol):
+    """A scenario that answers what is typed."""
+
+    listens: bool
+    """Whether what is typed now is for it."""
 
 
 @runtime_checkable

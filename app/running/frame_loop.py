@@ -1,10 +1,7 @@
 """Processing the frames of a session: each is tracked, drawn, shown and recorded."""
 
-from dataclasses import replace
-
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import ReplayInputs, RobotView, Step
-from cubeling.app.pipeline.table.spoken_line import Lines
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.quality_control import AUTO_QUALITY, QualityControl
 from cubeling.app.running.summary import Summary
@@ -19,12 +16,15 @@ def both_asked(first: Inputs, then: Inputs) -> Inputs:
     """Return what a player asked for before and after, as if it had been at the same time.
 
     >>> both_asked(Inputs(clear=True, inside=True), Inputs(scenario="reach", inside=True))
-    Inputs(clear=True, scenario='reach', line=None, inside=False, lines_of_others={})
+    Inputs(clear=True, scenario='reach', line=None, inside=False, typed='', hush=False, \
+lines_of_others={})
     """
     both = Inputs(
         clear=first.clear or then.clear,
         scenario=then.scenario or first.scenario,
         inside=first.inside != then.inside,
+        typed=" ".join(filter(None, (first.typed, then.typed))),
+        hush=first.hush or then.hush,
     )
     return both.with_lines({**first.lines, **then.lines})
 
@@ -35,8 +35,7 @@ class FrameLoop:
     def __init__(self, session: OpenedSession, summary: Summary) -> None:
         self._session, self._summary = session, summary
         self._inputs = Inputs()
-        self._start_over = self._inside = False
-        self._lines: Lines = {}
+        self._recorded = Inputs()
         self._index = 0
         self._replay: ReplayInputs | None = None
         self._hidden: Step | None = None
@@ -55,9 +54,8 @@ class FrameLoop:
         """Process one frame and show it; without drawing it, it is only not seen."""
         session, lap = self._session, self._session.monitor.times.lap
         self._read_recorded(frame)
-        asked = Inputs(clear=True) if self._take_start_over() else self._inputs
-        inside = asked.inside != self._take_inside()
-        inputs = replace(asked, inside=inside).with_lines(self._take_lines())
+        recorded = self._take_recorded()
+        inputs = both_asked(Inputs() if recorded.clear else self._inputs, recorded)
         session.change_scenario(inputs.scenario)
         if session.recording is not None:
             frame = session.recording.encode(frame)
@@ -73,9 +71,9 @@ class FrameLoop:
         """Process one frame without drawing and showing it."""
         session = self._session
         self._read_recorded(frame)
-        inputs = Inputs(clear=self._take_start_over(), inside=self._take_inside())
-        inputs = inputs.with_lines(self._take_lines())
-        self._hidden = session.playground.step(frame, inputs, self._replay, drawn=False)
+        self._hidden = session.playground.step(
+            frame, self._take_recorded(), self._replay, drawn=False
+        )
         if session.pace is None:  # else the robot lives in real time, and misses what is skipped
             self._feel(self._hidden)
         return self._hidden
@@ -140,26 +138,17 @@ class FrameLoop:
         if step.players:
             self._session.second_robot.feel(step.others[0].emotion)
 
-    def _take_start_over(self) -> bool:
-        start_over, self._start_over = self._start_over, False
-        return start_over
-
-    def _take_inside(self) -> bool:
-        inside, self._inside = self._inside, False
-        return inside
-
-    def _take_lines(self) -> Lines:
-        lines, self._lines = self._lines, {}
-        return lines
+    def _take_recorded(self) -> Inputs:
+        recorded, self._recorded = self._recorded, Inputs()
+        return recorded
 
     def _read_recorded(self, frame: Frame) -> None:
         """Read what a replay knows of a frame, and what the character begins to say."""
         session = self._session
         if frame.index < self._index:  # the player went back
-            self._start_over, self._lines, self._inside = False, {}, False
+            self._recorded = Inputs()
         self._index = frame.index
-        self._start_over |= frame.timestamp in session.start_overs
-        self._inside ^= frame.timestamp in session.openings  # two that were left out are none
-        self._lines = {**self._lines, **session.speaker.lines(frame.timestamp)}
+        # What came in with frames that were left out comes in with this one.
+        self._recorded = both_asked(self._recorded, session.recorded_inputs(frame.timestamp))
         if session.replay_inputs is not None:
             self._replay = next(session.replay_inputs, None)

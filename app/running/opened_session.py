@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.other_cube import cube_for
 from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs, ListeningScenario
 from cubeling.app.pipeline.step import ReplayInputs, RobotView
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
@@ -110,15 +110,17 @@ class OpenedSession:
     recorded: list[Path] = field(default_factory=list)
     """The recordings that have been completed before the end of the session."""
 
-    @cached_property
-    def start_overs(self) -> frozenset[float]:
-        """In a replay, timestamps of the frames in which the player started over [s]."""
-        return frozenset() if self.replayed is None else self.replayed.start_overs
+    def recorded_inputs(self, timestamp: float) -> Inputs:
+        """Return what is spoken from the frame of a timestamp on [s], and asked for in a replay."""
+        kept = None if self.replayed is None else self.replayed.inputs.get(timestamp)
+        asked = Inputs() if kept is None else kept.asked
+        return asked.with_lines(self.speaker.lines(timestamp))
 
-    @cached_property
-    def openings(self) -> frozenset[float]:
-        """In a replay, timestamps of the frames in which the cube was opened or closed [s]."""
-        return frozenset() if self.replayed is None else self.replayed.openings
+    @property
+    def listens(self) -> bool:
+        """Whether what a player types now is said to the character."""
+        scenario = self.playground.scenario
+        return self.replayed is None and isinstance(scenario, ListeningScenario)
 
     def keep_lens(self) -> Path | None:
         """Keep the lens of a live camera if play has measured it; return its file, if any."""
@@ -289,7 +291,7 @@ class OpenedSession:
 def settings_of(options: SessionOptions) -> ScenarioSettings:
     """Return the user's settings of a scenario; raises AppError or AffectError as reading them."""
     personality = None if options.personality is None else Personality.load(options.personality)
-    return ScenarioSettings(options.speed_map, options.turns, personality)
+    return ScenarioSettings(options.speed_map, options.turns, personality, options.talk_language)
 
 
 def scenario_of(options: SessionOptions, name: str, cube: CubeModel | None = None) -> Scenario:
@@ -300,4 +302,5 @@ def scenario_of(options: SessionOptions, name: str, cube: CubeModel | None = Non
         speed_map=options.speed_map,
         turns=options.turns,
         personality=options.personality,
+        language=options.talk_language,
     )

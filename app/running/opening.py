@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,13 +11,14 @@ from cubeling.app.errors import AppError
 from cubeling.app.output_path import default_folder
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.pipeline.scenario import CastScenario
+from cubeling.app.pipeline.scenario import CastScenario, ListeningScenario
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.kept_lens import LensStore
 from cubeling.app.running.opened_session import OpenedSession, scenario_of, settings_of
 from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.robots import RobotLine, is_real_robot
+from cubeling.app.running.typed_lines import TypedLines
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, scenario_cube
 from cubeling.app.session import SessionFile, SessionOptions
@@ -55,6 +56,7 @@ def open_session(
     source: FrameSource | None = None,
     replayed: SessionFile | None = None,
     screen: Screen | None = None,
+    typed: Iterable[str] | None = None,
     player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
@@ -75,6 +77,9 @@ def open_session(
     screen
         Where the steps go, instead of a window or a file; they have no pictures then. The caller
         closes it.
+    typed
+        Lines that are typed in front of the screen, which ends after the last reply; None for
+        none.
     player
         Publishes the character's actions and emotions; the caller closes its network.
     ending
@@ -133,6 +138,8 @@ def open_session(
         if screen is None:
             sound = open_sound(options, character, closing)
             screen, context = _open_screen(options, source, sound, preferences, monitor, closing)
+        if typed is not None:
+            screen = TypedLines(screen, typed)
         playground = Playground(
             scenario,
             intrinsics,
@@ -166,7 +173,9 @@ def open_session(
         pace = _pace(options, source, player)
         stepped = pace is None and not source.live
         lines = None if replayed is None else replayed.lines
-        speaker = open_speaker(options, (character, *others), lines, waits=stepped)
+        replies = isinstance(scenario, ListeningScenario)
+        cast = (character, *others)
+        speaker = open_speaker(options, cast, lines, waits=stepped, replies=replies)
         closing.callback(speaker.close)
         recording = None
         if options.record is not None:

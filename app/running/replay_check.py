@@ -7,7 +7,6 @@ from itertools import zip_longest
 
 from rich.table import Table
 
-from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
@@ -83,10 +82,7 @@ def check_session(
 def _steps(session: OpenedSession, progress: Progress | None) -> Iterator[Step]:
     """Process every frame, whatever its time."""
     for frame in session.source:
-        now = frame.timestamp
-        inputs = Inputs(clear=now in session.start_overs, inside=now in session.openings)
-        inputs = inputs.with_lines(session.speaker.lines(now))
-        step = session.playground.step(frame, inputs)
+        step = session.playground.step(frame, session.recorded_inputs(frame.timestamp))
         if progress is not None:
             progress(step)
         yield step

@@ -1,6 +1,6 @@
 """The mood of a session: it changes with what the hand and the character do."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from cubeling.affect import Feelings, Personality
 from cubeling.app.pipeline.scenario import EmotionTarget
@@ -29,6 +29,11 @@ class MoodController:
             self._personality = personality
             self.reset()
 
+    @property
+    def intensities(self) -> Mapping[str, float]:
+        """How strongly each of the 24 emotions is felt, 0…1."""
+        return self._feelings.intensities
+
     def update(
         self,
         controls: CubeControls,
@@ -36,14 +41,18 @@ class MoodController:
         weight: float = 1.0,
         speed: float = 0.0,
         events: Sequence[str] = (),
+        influences: Sequence[tuple[str, float]] = (),
     ) -> EmotionTarget:
         """Advance by one frame and return the emotion to show.
 
         The action is "idle" for nothing that changes the mood; `weight` is its intensity, −1…1, and
-        `speed` AvatAR's Speed of the character, 0…5. `events` happened besides the gestures.
+        `speed` AvatAR's Speed of the character, 0…5. `events` happened besides the gestures,
+        and `influences` are emotions that are felt for another reason, each 0…1.
         """
         for event in (*controls.gestures, *events):
             self._feelings.apply_event(event)
+        for word, value in influences:
+            self._feelings.influence(word, value)
         if controls.lifted and not self._lifted:
             self._feelings.apply_event("lifted")
         self._lifted = controls.lifted

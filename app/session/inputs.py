@@ -37,6 +37,17 @@ class RecordedInputs:
     others: tuple[RecordedLine, ...] = ()
     """What the rest of the cast wants to say."""
 
+    typed: str = ""
+    """What the player said."""
+
+    hush: bool = False
+    """Whether the player interrupted the character."""
+
+    @property
+    def asked(self) -> Inputs:
+        """What the player asked for and said, without what was spoken."""
+        return Inputs(clear=self.clear, inside=self.inside, typed=self.typed, hush=self.hush)
+
     @property
     def speeches(self) -> dict[str, SpeechIntent]:
         """What all want to say, by their names as `Lines` have them."""
@@ -46,7 +57,7 @@ class RecordedInputs:
     @classmethod
     def of(cls, inputs: Inputs, timestamp: float) -> "RecordedInputs | None":
         """Return what a recording keeps of the inputs of a frame; None for nothing."""
-        if not (inputs.clear or inputs.inside or inputs.lines):
+        if not (inputs.clear or inputs.inside or inputs.typed or inputs.hush or inputs.lines):
             return None
         speeches = {
             name: SpeechIntent(line.utterance, timestamp, line.profile)
@@ -54,4 +65,4 @@ class RecordedInputs:
         }
         own = speeches.pop(LEAD, None)
         others = tuple(RecordedLine(*each) for each in speeches.items())
-        return cls(inputs.clear, inputs.inside, own, timestamp, others)
+        return cls(inputs.clear, inputs.inside, own, timestamp, others, inputs.typed, inputs.hush)

@@ -56,6 +56,9 @@ class SessionOptions:
     """Code of the language in which the character speaks, or "none" for silence; None for that of
     a recording, or English in a window."""
 
+    talk_language: str = ""
+    """Code of the language in which a dialogue begins; "" for its first one."""
+
     voice: str | None = None
     """The command of the voice; None for eSpeak NG."""
 
@@ -206,6 +209,7 @@ class SessionOptions:
             "speed_map": self.speed_map,
             "turns": f"{self.turns:g}",
             "personality": self.personality or "",
+            "talk_language": self.talk_language,
             "look": self.look,
             "inside": self.inside,
             "realism": ",".join(self.realism),
@@ -249,6 +253,7 @@ class SessionOptions:
             speed_map=metadata.get("speed_map", "corrected"),
             turns=numbers["turns"],
             personality=metadata.get("personality") or None,
+            talk_language=metadata.get("talk_language", ""),
             look=metadata.get("look", "auto"),
             inside=metadata.get("inside", "auto"),
             realism=tuple(filter(None, realism.split(","))),

@@ -36,6 +36,9 @@ class LineRequest:
     manner: Manner
     """How it is said."""
 
+    is_reply: bool = False
+    """Whether somebody waits for it: without a voice, it is said without a sound."""
+
 
 def events_for(step: Step, number: int) -> tuple[str, ...]:
     """Return what has happened in a step to one of the cast, by its number.

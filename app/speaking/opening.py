@@ -16,6 +16,7 @@ def open_speaker(
     recorded: Mapping[float, Lines] | None = None,
     *,
     waits: bool,
+    replies: bool = False,
 ) -> Speaker:
     """Return what speaks in a session; the caller closes it.
 
@@ -33,6 +34,8 @@ def open_speaker(
         another source.
     waits
         Whether the session is not in real time.
+    replies
+        Whether a scenario answers: replies are said in any case, if need be without a sound.
 
     Raises
     ------
@@ -42,7 +45,7 @@ def open_speaker(
     asked = options.language is not None or options.lines is not None
     if recorded is not None and not asked:
         return RecordedSpeaker(recorded)
-    if options.language == SILENT or not (asked or options.windowed):
+    if not replies and (options.language == SILENT or not (asked or options.windowed)):
         return RecordedSpeaker({})
     from cubeling.app.speaking.lines import (
         bundled_languages,
@@ -62,15 +65,21 @@ def open_speaker(
     else:
         path = options.lines
         lines_of, languages = lru_cache(partial(read_lines_for, path)), languages_in(path)
-    lines_of(options.scenario, first)  # refuses a language that it lacks
+    if first != SILENT:
+        lines_of(options.scenario, first)  # refuses a language that it lacks
+    voice, problem = None, ""
     try:
-        voice = open_voice(options.voice)
+        voice = None if first == SILENT else open_voice(options.voice)
     except VoiceError as error:
-        if asked:
+        if asked and not replies:
             raise
-        return RecordedSpeaker({}, str(error))
+        problem = str(error)
+    if voice is None and not replies:
+        return RecordedSpeaker({}, problem)
     gestures = {id(each.gestures): each.gestures for each in cast if each.gestures is not None}
     choices = tuple(dict.fromkeys((first, *languages, SILENT)))
-    return LiveSpeaker(
+    speaker = LiveSpeaker(
         voice, lines_of, choices, options.profile, gestures=[*gestures.values()], waits=waits
     )
+    speaker.problem = problem
+    return speaker

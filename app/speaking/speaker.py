@@ -2,9 +2,14 @@
 
 import queue
 import threading
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
+from cubeling.affect import Emotion
+from cubeling.app.pipeline.scenario import Reply
 from cubeling.app.pipeline.step import Performance, Step
 from cubeling.app.pipeline.table.spoken_line import LEAD, Lines, SpokenLine
 from cubeling.app.speaking.cast_voices import combined, voices_of_cast
@@ -17,18 +22,23 @@ from cubeling.app.speaking.line_chooser import (
 )
 from cubeling.app.speaking.lines import SILENT, WATCHING, ScenarioLines
 from cubeling.characters import CharacterError
+from cubeling.characters.behaviour import estimate
 from cubeling.characters.motion import GestureLibrary
 from cubeling.characters.speech import (
     Manner,
     SpeechProfile,
     TaggedText,
     Voice,
+    manner_of,
     say,
     utterance_of,
 )
 
 MAX_FAILURES = 3
 """A voice that has failed so often in a row is not asked again."""
+
+SOUNDLESS_HZ = 8000
+"""Sample rate of a line without a sound [Hz]."""
 
 ANSWER_S = 5.0
 """How long a session that is not in real time waits for a line [s]."""
@@ -45,7 +55,7 @@ class LiveSpeaker:
     Parameters
     ----------
     voice
-        The voice; `close` ends it.
+        The voice; `close` ends it. None to say replies without a sound, and nothing else.
     lines_of
         What is said in a scenario, by its name, in a language; None for nothing.
     languages
@@ -62,7 +72,7 @@ class LiveSpeaker:
 
     def __init__(
         self,
-        voice: Voice,
+        voice: Voice | None,
         lines_of: LinesOf,
         languages: tuple[str, ...],
         profile: SpeechProfile,
@@ -77,8 +87,9 @@ class LiveSpeaker:
         self._choosers: dict[str, LineChooser] = {}
         self._voices: dict[str, Manner] = {}
         self._last = ""  # the one that has spoken last of those that only watch
-        self._requests: queue.Queue[tuple[str, LineRequest] | None] = queue.Queue()
-        self._said: queue.Queue[tuple[str, SpokenLine | None]] = queue.Queue()
+        self._requests: queue.Queue[tuple[str, int, LineRequest] | None] = queue.Queue()
+        self._said: queue.Queue[tuple[str, int, SpokenLine | None]] = queue.Queue()
+        self._newest: Counter[str] = Counter()
         self._asked = 0
         self._thread = threading.Thread(
             target=self._run, args=(gestures,), name="voice", daemon=True
@@ -96,7 +107,11 @@ class LiveSpeaker:
         self._asked = 0
         while not self._said.empty():
             ready.append(self._said.get_nowait())
-        return {name: line for name, line in ready if line is not None}
+        return {
+            name: line
+            for name, number, line in ready
+            if line is not None and number == self._newest[name]
+        }
 
     def hear(self, step: Step) -> None:
         """Let the voice speak what there is to say about a step."""
@@ -107,12 +122,20 @@ class LiveSpeaker:
                 request = chooser.update(step.frame.timestamp, seen, events_for(step, number))
                 if request is not None:
                     wishes[name] = request
+            if seen.outcome.hush:
+                self._newest[name] += 1  # what the voice still works at is not wanted any more
+            if seen.outcome.reply is not None:
+                wishes[name] = reply_request(seen.outcome.reply, seen.emotion.emotion)
         if len(members) - 1 != len(self._voices):
             self._voices = voices_of_cast([name for name, _ in members[1:]])
-        for name in self._chosen(wishes) if not self.problem else ():
+        for name in self._chosen(wishes):
             wish, voice = wishes[name], self._voices.get(name, Manner())
+            if self.problem and not wish.is_reply:
+                continue
             self._asked += 1
-            self._requests.put((name, replace(wish, manner=combined(wish.manner, voice))))
+            self._newest[name] += 1
+            wish = replace(wish, manner=combined(wish.manner, voice))
+            self._requests.put((name, self._newest[name], wish))
 
     def _chooser(self, name: str, scenario: str, number: int) -> LineChooser | None:
         """Return what chooses the lines of one of the cast; None for silence."""
@@ -139,22 +162,29 @@ class LiveSpeaker:
         """End the voice; a second call does nothing."""
         self._requests.put(None)
         self._thread.join(timeout=1.0)
-        self._voice.close()
+        if self._voice is not None:
+            self._voice.close()
 
     def _run(self, gestures: Sequence[GestureLibrary]) -> None:
         failures = 0
         self._prepare(gestures)
         while (asked := self._requests.get()) is not None:
-            name, request = asked
+            name, number, request = asked
             self._prepare(gestures)
-            try:
-                self._said.put((name, line_of(self._voice, request, self.profile)))
-                failures = 0
-            except CharacterError as error:
-                self._said.put((name, None))
-                failures += 1
-                if failures == MAX_FAILURES:
-                    self.problem = str(error)
+            line = None
+            wanted = number == self._newest[name]  # else it was cut off, or another one came
+            voice = None if self.language == SILENT else self._voice
+            if voice is not None and wanted and failures < MAX_FAILURES:
+                try:
+                    line = line_of(voice, request, self.profile)
+                    failures = 0
+                except CharacterError as error:
+                    failures += 1
+                    if failures == MAX_FAILURES:
+                        self.problem = str(error)
+            if line is None and wanted and request.is_reply:
+                line = soundless_line(request, self.profile)
+            self._said.put((name, number, line))
 
     def _prepare(self, gestures: Sequence[GestureLibrary]) -> None:
         """Make what plans the gestures, which takes longer than a frame, unless it is there."""
@@ -166,6 +196,21 @@ def _named(step: Step) -> list[tuple[str, Performance]]:
     """Return what the cast does in a step, by their names as `Lines` have them."""
     first, *others = step.cast
     return [(LEAD, first), *((each.name, each) for each in others)]
+
+
+def reply_request(reply: Reply, emotion: Emotion) -> LineRequest:
+    """Return how a voice is asked for a reply that is spoken in an emotion."""
+    return LineRequest(reply.text, reply.language, manner_of(emotion), is_reply=True)
+
+
+def soundless_line(request: LineRequest, profile: SpeechProfile) -> SpokenLine:
+    """Return a line that takes as long as a voice would, for who reads it."""
+    tagged = TaggedText.read(request.text)
+    said = estimate(tagged.text)
+    spans = tagged.gesture_spans(said.words, said.duration)
+    said = replace(said, language=request.language, gestures=spans)
+    silence = np.zeros(round(said.duration * SOUNDLESS_HZ), np.float32)
+    return SpokenLine(said, silence, SOUNDLESS_HZ, profile)
 
 
 def line_of(voice: Voice, request: LineRequest, profile: SpeechProfile) -> SpokenLine:

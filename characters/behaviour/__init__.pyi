@@ -70,7 +70,10 @@ from cubeling.characters.behaviour.realization.frame import (
     RealizedFrame as RealizedFrame,
     Saying as Saying,
 )
-from cubeling.characters.behaviour.realization.speech_kind import retime_speeches as retime_speeches
+from cubeling.characters.behaviour.realization.speech_kind import (
+    estimate as estimate,
+    retime_speeches as retime_speeches,
+)
 from cubeling.characters.behaviour.realization.surroundings import (
     NamedPlaces as NamedPlaces,
     numbers_of as numbers_of,
@@ -86,7 +89,7 @@ from cubeling.characters.behaviour.symbolic_gesture import (
 )
 from cubeling.characters.dialogue.kernel import (
     Dialogue as Dialogue,
-    Turn as Turn,
+    DialogueTurn as DialogueTurn,
     heard_of as heard_of,
 )
 from cubeling.characters.dialogue.reading import (
@@ -95,7 +98,7 @@ from cubeling.characters.dialogue.reading import (
 )
 from cubeling.characters.dialogue.script import DialogueScript as DialogueScript
 from cubeling.characters.dialogue.vocabulary import (
-    CORE as CORE,
+    CORE_VOCABULARY as CORE_VOCABULARY,
     ConditionKind as ConditionKind,
     Vocabulary as Vocabulary,
     act as act,

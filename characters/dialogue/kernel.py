@@ -17,7 +17,13 @@ import numpy as np
 from cubeling.characters.dialogue.checking import SAID_SLOT
 from cubeling.characters.dialogue.patterns import Heard, fill
 from cubeling.characters.dialogue.script import DialogueScript, Localized, Transition, Unit
-from cubeling.characters.dialogue.vocabulary import CORE, Moment, Slots, TurnDraft, Vocabulary
+from cubeling.characters.dialogue.vocabulary import (
+    CORE_VOCABULARY,
+    Moment,
+    Slots,
+    TurnDraft,
+    Vocabulary,
+)
 from cubeling.characters.speech.speech import Utterance
 
 INTERVAL_S = 0.1
@@ -36,7 +42,7 @@ NO_FEELINGS: Mapping[str, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
-class Turn:
+class DialogueTurn:
     """What a character does in one turn of a dialogue."""
 
     text: str
@@ -123,7 +129,7 @@ class Dialogue:
         *,
         language: str = "",
         seed: int = 0,
-        vocabulary: Vocabulary = CORE,
+        vocabulary: Vocabulary = CORE_VOCABULARY,
     ) -> None:
         self.script = script
         language = language if language in script.languages else script.languages[0]
@@ -153,7 +159,7 @@ class Dialogue:
         busy: bool = False,
         feelings: Mapping[str, float] = NO_FEELINGS,
         world: Any = None,
-    ) -> Turn | None:
+    ) -> DialogueTurn | None:
         """Advance to a time and return what is done; None for nothing.
 
         Parameters
@@ -190,7 +196,7 @@ class Dialogue:
             state.quiet_since = now
         if not (draft.texts or draft.influences or draft.acts or answered):
             return None
-        return Turn(
+        return DialogueTurn(
             " ".join(draft.texts),
             draft.language,
             tuple(draft.influences),
@@ -232,15 +238,15 @@ class Dialogue:
         for transition in unit.states[self.state.states[unit.name]].transitions:
             if moment.heard is None if transition.hears else only_answers:
                 continue
-            slots: Slots | None = {}
+            slots: Slots = {}
             for each in transition.conditions:
                 found = kinds[each.kind].holds(moment, each.argument)
                 if found is None:
-                    slots = None
                     break
-                slots = {**slots, **found}
-            if slots is not None and not self._repeats(unit, transition, moment.language):
-                steps.append(_Step(unit, transition, slots))
+                slots.update(found)
+            else:
+                if not self._repeats(unit, transition, moment.language):
+                    steps.append(_Step(unit, transition, slots))
         return steps
 
     def _repeats(self, unit: Unit, transition: Transition, language: str) -> bool:

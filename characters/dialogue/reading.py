@@ -33,7 +33,7 @@ from cubeling.characters.dialogue.script import (
     UnitState,
 )
 from cubeling.characters.dialogue.spelling import Spelling, WordSet
-from cubeling.characters.dialogue.vocabulary import CORE, Vocabulary
+from cubeling.characters.dialogue.vocabulary import CORE_VOCABULARY, Vocabulary
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.tagged_text import TaggedText
 from cubeling.characters.xml_elements import XmlElement, XmlLimits, read_xml
@@ -61,7 +61,7 @@ MAX_LANGUAGES = 20
 YES_NO = {"yes": True, "no": False}
 
 
-def read_script(path: str | Path, vocabulary: Vocabulary = CORE) -> DialogueScript:
+def read_script(path: str | Path, vocabulary: Vocabulary = CORE_VOCABULARY) -> DialogueScript:
     """Read a script.
 
     Raises

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Self
 
-from cubeling.affect.occ import OCC_FACES
+from cubeling.affect import OCC_FACES
 from cubeling.characters.dialogue.patterns import Heard, Pattern, fill, patterns_of
 from cubeling.characters.dialogue.script import ANY_LANGUAGE, Localized
 from cubeling.characters.dialogue.spelling import WordSet
@@ -275,6 +275,10 @@ def _if(holds: bool) -> Slots | None:
     return {} if holds else None
 
 
+def _forget(draft: TurnDraft, slot: str) -> None:
+    draft.profile.pop(slot, None)
+
+
 def _nothing(element: XmlElement) -> None:
     if element.text.strip() or element.children:
         raise CharacterError("has nothing in it")
@@ -347,13 +351,11 @@ ACTIONS: dict[str, ActionKind] = {
         _remembered,
         lambda draft, pair: draft.profile.update({pair[0]: fill(pair[1], draft.profile)}),
     ),
-    "forget": ActionKind(
-        "empty a slot", _slot, lambda draft, slot: draft.profile.pop(slot, None) and None
-    ),
+    "forget": ActionKind("empty a slot", _slot, lambda draft, slot: _forget(draft, slot)),
 }
 """The actions by the type that names them; a new one is a line here."""
 
-CORE = Vocabulary(CONDITIONS, ACTIONS)
+CORE_VOCABULARY = Vocabulary(CONDITIONS, ACTIONS)
 """What every script may name."""
 
 

@@ -74,6 +74,11 @@ def reach(edge: float, options: SyntheticOptions) -> Script:
     return _script("locomotion", c.carry(-0.04, 0.02, 0.19, 8.4).rest(6.4))
 
 
+def talk(edge: float, options: SyntheticOptions) -> Script:
+    """Rest beside the character for a quarter of an hour."""
+    return _script("companion", Choreography(edge, 0.06, 0.02).rest(900.0))
+
+
 def static(edge: float, options: SyntheticOptions) -> Script:
     """Rest in a random position and heading."""
     random = np.random.default_rng(options.seed)
@@ -197,7 +202,7 @@ def _stops(edge: float, options: SyntheticOptions) -> list[Array]:
 SCRIPTS: dict[str, Callable[[float, SyntheticOptions], Script]] = {
     script.__name__: script
     for script in (
-        follow, sketch, companion, reach,
+        follow, sketch, companion, reach, talk,
         static, turn, turns, tip, shake, sweep, fingers, poses, wave,
     )
 }  # fmt: skip

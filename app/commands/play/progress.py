@@ -2,7 +2,7 @@
 
 import shlex
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -41,6 +41,7 @@ def play_session(
     player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
+    typed: Iterable[str] | None = None,
 ) -> None:
     """Open a session, run it, and print its summary and what was kept; see `open_session`.
 
@@ -59,6 +60,7 @@ def play_session(
             player=player,
             ending=ending,
             preferences=preferences,
+            typed=typed,
         ) as session:
             at_end.callback(report_kept, session, console)
             if options.intrinsics is None and session.source.intrinsics is None:

@@ -140,7 +140,9 @@ class CastMember:
             view=view,
             gaze=self.attention.update(seen.state, seen.controls, command, company),
             emotion=decision.emotion.emotion,
-            speech=self.speaking.update(inputs.line, command, silence=inputs.clear),
+            speech=self.speaking.update(
+                inputs.line, command, silence=inputs.clear or decision.hush
+            ),
         )
 
     def perform(self, command: CharacterCommand, posed: PosedCharacter | None = None) -> PosedBody:

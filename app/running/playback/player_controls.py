@@ -61,6 +61,7 @@ class PlayerControls:
                 ending=self._ending if transport.ended else None,
                 choices=self._choices.found,
                 looking=self._choices.looking,
+                listens=session.listens,
             )
         )
 

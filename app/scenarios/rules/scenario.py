@@ -121,7 +121,7 @@ class RulesScenario:
     def _command(self, intent: Intent, moment: Moment, *, visible: bool) -> CharacterCommand:
         return CharacterCommand(
             timestamp=moment.controls.timestamp,
-            locomotion=_way(intent, moment, self.start),
+            locomotion=way_of(intent, moment, self.start),
             action=ActionIntent(intent.action, 1.0) if not intent.go else None,
             visible=visible,
         )
@@ -151,7 +151,7 @@ class RulesScenario:
         return now - self._since.setdefault(index, now) >= rule.after
 
 
-def _way(intent: Intent, moment: Moment, home: RootDelta) -> LocomotionIntent:
+def way_of(intent: Intent, moment: Moment, home: RootDelta) -> LocomotionIntent:
     """Return where an intent lets the character go, and that it faces the player when it stands."""
     cube, character = moment.controls.position, moment.situation.character
     if intent.go == "home":

@@ -39,6 +39,7 @@ from cubeling.app.ui.playback.requests import (
 )
 from cubeling.app.ui.playback.scenario_card import ScenarioCard
 from cubeling.app.ui.playback.status import NO_STATUS, MenuChoice, SessionStatus
+from cubeling.app.ui.playback.typing_field import TypingField
 from cubeling.files import write_whole
 
 Picture = NDArray[np.uint8]
@@ -110,6 +111,7 @@ class PlaybackLayer:
         """Whether the card with all scenarios lies over the picture."""
         self._naming: MarkName | None = None
         self._clock = clock
+        self._field = TypingField()
         self._pointer: float | None = None
         self._dragging = False
         self._changed = True
@@ -148,11 +150,37 @@ class PlaybackLayer:
         requests, self._requests = self._requests, []
         return tuple(requests)
 
+    def type(self, character: str) -> bool:
+        """Take a character that is typed; return whether it went into the field for text."""
+        if not (self._listens and self._field.open):
+            return False
+        self._changed = True
+        if self._field.type(character):
+            self._inputs = replace(self._inputs, hush=True)  # who begins to speak is listened to
+        return True
+
+    @property
+    def _listens(self) -> bool:
+        """Whether what is typed is text: nothing else over the picture waits for keys."""
+        free = self._status.ending is None and self._naming is None and not self._is_covered
+        return self._status.listens and free
+
+    @property
+    def _is_covered(self) -> bool:
+        """Whether a card for keys lies over the picture."""
+        return self._keys or self._menu is not None or self.shows_scenarios
+
     def press(self, key: str, *, shift: bool = False, repeated: bool = False) -> None:
         """Handle a key by its name in the table of keys; `repeated` while it is held."""
         self._changed = True
         if self._naming is not None and self._type(key):
             return
+        if self._listens:
+            handled, said = self._field.press(key)
+            if said:
+                self._inputs = replace(self._inputs, typed=said)
+            if handled:
+                return
         if self._menu is not None and key in MENU_KEYS:
             self._request(self._menu.press(key))
             return
@@ -209,9 +237,12 @@ class PlaybackLayer:
         scale = size[1] / PICTURE_HEIGHT
         self._width = width = size[0] / scale
         cards = [draw_buttons(width, scale)]
-        covered = self._keys or self._menu is not None or self.shows_scenarios
-        if self._status.ending is not None and not covered:
+        if self._status.ending is not None and not self._is_covered:
             cards.append(draw_ending(self._status.ending, ENDING_KEYS, width, scale))
+        if self._listens:
+            field = self._field.draw(width, scale)
+            cards.append(field)
+            taken = (*taken, field.box(scale))
         cards += self._announcements.draw(self._status, width, scale, taken)
         if self._keys:
             cards.append(draw_keys(width, scale))
@@ -322,7 +353,7 @@ class PlaybackLayer:
         self._requests.append(ListChoices())
 
     def _back(self) -> None:
-        if self._keys or self._menu is not None or self.shows_scenarios:
+        if self._is_covered:
             self._keys, self._menu, self.shows_scenarios = False, None, False
         else:
             self._actions[WindowRequest.QUIT]()

@@ -96,6 +96,9 @@ class SessionStatus:
     looking: bool = False
     """Whether more choices may be found."""
 
+    listens: bool = False
+    """Whether what is typed is said to the character."""
+
 
 NO_STATUS = SessionStatus()
 """The status of a screen that was told nothing."""

@@ -201,6 +201,10 @@ class WindowSurface:
         if key in ("Esc", "Q"):
             self.quit()
 
+    def handle_character(self, character: str) -> bool:
+        """Handle a character that is typed; return whether it is text, and no key."""
+        return False
+
     def handle_pointer(self, x: float, y: float) -> None:
         """Handle the mouse at a place of the picture [px]."""
 
@@ -278,7 +282,7 @@ class WindowSurface:
         self._framebuffer_size = wide, high
 
     def _on_character(self, _window: Any, code: int) -> None:
-        if chr(code) in TYPED_KEYS:
+        if not self.handle_character(chr(code)) and chr(code) in TYPED_KEYS:
             self.handle_key(chr(code))
 
     def _on_pointer(self, _window: Any, x: float, y: float) -> None:

@@ -162,6 +162,10 @@ class Window(WindowSurface):
         """Hand a key on to the layer over the picture."""
         self._layer.press(key, shift=shift, repeated=repeated)
 
+    def handle_character(self, character: str) -> bool:
+        """Hand a character on to the layer over the picture, if it takes text."""
+        return self._layer.type(character)
+
     def handle_pointer(self, x: float, y: float) -> None:
         """Follow the mouse, in pixels of the picture."""
         scale = self._picture_scale

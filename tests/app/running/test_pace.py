@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from cubeling.app.pipeline.cast.cast import Cast
+from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.clock import Pace
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
@@ -96,7 +97,7 @@ def play_slowly(short_session):
         with open_session(options, screen=screen) as session:
             pace = session.pace and Pace(session.pace.max_late, time, time.sleep)
             played = replace(session, pace=pace)
-            played.start_overs = STARTED_OVER
+            played.recorded_inputs = lambda now: Inputs(clear=now in STARTED_OVER)
             summary = run(played)
         return screen.steps, summary
 

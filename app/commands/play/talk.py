@@ -1,0 +1,169 @@
+"""The command `cubeling talk`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from cubeling.app.commands.character_options import VoiceOption
+from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
+from cubeling.app.commands.play.play_options import (
+    DEFAULT_CAMERA,
+    FILES_GROUP,
+    CharacterOption,
+    FolderOption,
+    OutputOption,
+    PersonalityOption,
+    RecordOption,
+    RobotOption,
+    RobotSettingsOption,
+)
+from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
+from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_input
+from cubeling.app.pipeline.registry import SCRIPT_SUFFIX
+from cubeling.app.scenarios import find_scenario
+from cubeling.app.ui.display import has_display
+from cubeling.files import FileKind
+
+if TYPE_CHECKING:
+    from cubeling.app.session import SessionOptions
+    from cubeling.tracking import FrameSource
+
+BUNDLED = "talk"
+"""Name of the dialogue that comes with the program."""
+
+DESK = "synthetic:talk"
+"""What is seen where there is no camera: the cube beside the character."""
+
+TYPED_FILE = FileKind(
+    "text", (".txt",), AppError, 1_000_000, "cubeling.app.commands.play.talk:read_typed"
+)
+"""Lines that are typed."""
+
+
+@with_preferences
+def talk(
+    script: Annotated[
+        str, typer.Argument(help="A dialogue: an .xml file, see docs/talking.md.")
+    ] = BUNDLED,
+    character: CharacterOption = None,
+    language: Annotated[
+        str,
+        typer.Option(
+            help="The language in which it begins, such as es, or none for no sound; it follows "
+            "that of what you type."
+        ),
+    ] = "",
+    typed: Annotated[
+        Path | None,
+        typer.Option(help="A file with what is typed, a line each, instead of the keyboard."),
+    ] = None,
+    source: Annotated[
+        str | None,
+        typer.Option(
+            "--source",
+            "-s",
+            help="Where the pictures come from, as for cubeling play; a drawn desk without a "
+            "camera.",
+        ),
+    ] = None,
+    robot: RobotOption = "sim",
+    output: OutputOption = None,
+    overwrite: OverwriteOption = False,
+    record: RecordOption = None,
+    personality: PersonalityOption = None,
+    voice: VoiceOption = None,
+    robot_settings: RobotSettingsOption = None,
+    codec: VideoCodecOption = "auto",
+    folder: FolderOption = None,
+    only_text: Annotated[
+        bool,
+        typer.Option(
+            "--only-text",
+            help="Talk in the terminal, without a picture.",
+            rich_help_panel=FILES_GROUP,
+        ),
+    ] = False,
+    *,
+    preferences: GivenPreferences,
+) -> None:
+    """Talk with a character: type, and it answers with voice, face and gestures.
+
+    With --output or --record, lines come from --typed or the standard input. Without a display, the
+    talk is in the terminal.
+
+    Example: cubeling talk --character vleo
+    """
+    if script != BUNDLED and not script.endswith(SCRIPT_SUFFIX):
+        raise AppError(f"'{script}' is no dialogue: give an .xml file, see docs/talking.md")
+    check_input(typed, "text")
+    from cubeling.app.running.option_checks import check_inputs, check_output_paths
+    from cubeling.app.session import SessionOptions
+
+    written = output is not None or record is not None
+    options = SessionOptions(
+        scenario=script,
+        source=source or (DESK if written or typed else DEFAULT_CAMERA),
+        character=character,
+        language=language if language == "none" else None,
+        talk_language="" if language == "none" else language,
+        personality=personality,
+        voice=voice,
+        robot=robot,
+        robot_settings=robot_settings,
+        record=record,
+        output=output,
+        overwrite=overwrite,
+        pictures=output is not None or not written,
+        video_codec=codec,
+        folder=folder,
+    )
+    check_output_paths(options)
+    options, kept = preferences.open(options)
+    check_inputs(options)
+    if only_text or not (written or has_display()):
+        from cubeling.app.commands.play.terminal_talk import talk_in_terminal
+
+        talk_in_terminal(find_scenario(script), _lines(typed), options.talk_language)
+        return
+    from cubeling.app.commands.play.progress import play_session
+
+    with ExitStack() as closing:
+        camera = None
+        if options.windowed and source is None and typed is None:
+            options, camera = _with_camera(options, closing)
+        lines = _lines(typed) if written or typed else None
+        play_session(options, f"talking: {script}", source=camera, preferences=kept, typed=lines)
+
+
+def read_typed(path: Path) -> list[str]:
+    """Return the lines of a text file; AppError if it cannot be read."""
+    return TYPED_FILE.read_text(path).splitlines()
+
+
+def _lines(typed: Path | None) -> Iterable[str]:
+    return sys.stdin if typed is None else read_typed(typed)
+
+
+def _with_camera(
+    options: SessionOptions, closing: ExitStack
+) -> tuple[SessionOptions, FrameSource | None]:
+    """Open the first camera; without one, say so and take the drawn desk."""
+    from dataclasses import replace
+
+    from cubeling.tracking import TrackingError, open_source
+
+    try:
+        return options, closing.enter_context(open_source(DEFAULT_CAMERA))
+    except TrackingError as error:
+        line = f"[dim]No live picture, so the desk is drawn: {escape(str(error))}[/]"
+        Console().print(line, soft_wrap=True)
+        return replace(options, source=DESK), None

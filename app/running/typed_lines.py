@@ -1,0 +1,84 @@
+"""Lines that are typed by nobody: each as soon as the character has finished."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.ui.notice import Notice
+from cubeling.app.ui.playback.requests import SessionRequest
+from cubeling.app.ui.playback.status import SessionStatus
+from cubeling.app.ui.screen import Screen
+
+PAUSE_S = 1.2
+"""From the end of what the character says to the next line [s]."""
+
+END_S = 2.0
+"""From the end of the last reply to the end of the session [s]."""
+
+
+class TypedLines:
+    """A `Screen` in front of which lines are typed; after the last reply it is closed.
+
+    The times are those of the frames, so that the same lines give the same session.
+
+    Parameters
+    ----------
+    screen
+        Where the steps go; the caller closes it.
+    lines
+        What is typed. Empty ones are left out; they are read one by one, as from a terminal.
+    """
+
+    def __init__(self, screen: Screen, lines: Iterable[str]) -> None:
+        self._screen = screen
+        self._lines = (line.strip() for line in lines if line.strip())
+        self._next: str | None = ""
+        self._quiet_since: float | None = None
+        self._over = False
+        self.attended = screen.attended
+
+    def show(self, step: Step, robot: RobotView) -> Inputs:
+        """Show a step, and return the next line if it is time."""
+        inputs = self._screen.show(step, robot)
+        now, speech = step.frame.timestamp, step.command.speech
+        talks = step.outcome.reply is not None or (speech is not None and now < speech.end)
+        if talks or self._quiet_since is None or not step.posed.visible:
+            self._quiet_since = now
+        quiet = now - self._quiet_since
+        if self._next == "" and quiet >= PAUSE_S:
+            self._next = next(self._lines, None)
+        if self._next:
+            said, self._next, self._quiet_since = self._next, "", now
+            return replace(inputs, typed=said)
+        self._over = self._next is None and quiet >= END_S
+        return inputs
+
+    def preview(self, step: Step, robot: RobotView) -> None:
+        """Show a step on the way to another one."""
+        self._screen.preview(step, robot)
+
+    def wait(self, notice: Notice | None) -> None:
+        """Process events while no frame comes."""
+        self._screen.wait(notice)
+
+    def take_requests(self) -> tuple[SessionRequest, ...]:
+        """Return what the player has asked of the session."""
+        return self._screen.take_requests()
+
+    def report(self, status: SessionStatus) -> None:
+        """Show a state of the session."""
+        self._screen.report(status)
+
+    def notify(self, words: str) -> None:
+        """Show a notice for some seconds: one short line."""
+        self._screen.notify(words)
+
+    @property
+    def closed(self) -> bool:
+        """Whether all is said, or the screen is closed."""
+        return self._over or self._screen.closed
+
+    def close(self) -> None:
+        """Close the screen; a second call does nothing."""
+        self._screen.close()

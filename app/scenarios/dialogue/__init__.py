@@ -1,0 +1,1 @@
+"""Scenarios that are a dialogue: what is typed is answered; see docs/talking.md."""
