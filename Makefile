@@ -40,6 +40,7 @@ campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faul
 	$(BIN)/python -m tests.campaigns.server
 	$(BIN)/python -m tests.campaigns.drawing
 	$(BIN)/python -m tests.campaigns.cast
+	$(BIN)/python -m tests.campaigns.talk
 	$(BIN)/python -m tests.campaigns.files --files 1e5
 	$(BIN)/python -m tests.campaigns.kills
 	$(BIN)/python -m tests.campaigns.camera_faults
@@ -59,6 +60,7 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.server --short --seconds 1
 	$(BIN)/python -m tests.campaigns.drawing --minutes 1
 	$(BIN)/python -m tests.campaigns.cast --minutes 1
+	$(BIN)/python -m tests.campaigns.talk --turns 1e4
 	$(BIN)/python -m tests.campaigns.files --files 1e4
 	$(BIN)/python -m tests.campaigns.kills --kills 10
 	$(BIN)/python -m tests.campaigns.camera_faults --faults stall "huge header"

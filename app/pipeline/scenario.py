@@ -10,7 +10,7 @@ from cubeling.app.pipeline.choices import check_speed_map, check_turns
 from cubeling.app.pipeline.table.props import Thing
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.pipeline.table.spoken_line import LEAD, Lines, SpokenLine
-from cubeling.characters import CharacterCommand, RootDelta
+from cubeling.characters import Character, CharacterCommand, RootDelta, meanings_of
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel
 
@@ -232,6 +232,32 @@ def check_actions(scenario: Scenario, character: str, known: Collection[str]) ->
         if action not in known:
             listed = ", ".join(known) or "none"
             raise AppError(f"{place}: {character} cannot '{action}'; its actions: {listed}")
+
+
+@runtime_checkable
+class GesturingScenario(Protocol):
+    """A scenario that knows from the beginning which gestures its texts will ask for."""
+
+    gestures: Mapping[str, str]
+    """The place that names each gesture, such as "my.xml:12", by the gesture."""
+
+
+def check_gestures(scenario: Scenario, character: Character) -> None:
+    """Refuse a character that lacks a gesture which the scenario's texts will ask for.
+
+    Raises
+    ------
+    AppError
+        With the place that names the first such gesture.
+    """
+    asked = scenario.gestures if isinstance(scenario, GesturingScenario) else {}
+    known = meanings_of(character, asked)
+    for gesture, place in asked.items():
+        if gesture not in known:
+            raise AppError(
+                f"{place}: {character.name} has no gesture '{gesture}'; "
+                "cubeling gesture library lists them"
+            )
 
 
 def missing_roles(scenario: type[Scenario], cube: CubeModel) -> list[str]:

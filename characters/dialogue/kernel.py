@@ -187,6 +187,10 @@ class Dialogue:
             quiet = now - state.quiet_since
             moment = Moment(heard, language, spelled, feelings, state.profile, quiet, False, world)
             step = self._choose(moment, only_answers=busy and not answered)
+            if step is None and answered == "" and state.waiting:
+                heard = state.waiting.pop(0)  # nobody answers the one before
+                language, spelled = self._understand(heard)
+                continue
             if step is None:
                 break
             if step.transition.hears and heard is not None:

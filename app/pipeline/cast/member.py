@@ -10,6 +10,7 @@ from cubeling.app.pipeline.scenario import (
     Outcome,
     Scenario,
     check_actions,
+    check_gestures,
 )
 from cubeling.app.pipeline.scenario_errors import check_outcome, scenario_errors
 from cubeling.app.pipeline.step import Performance
@@ -96,6 +97,7 @@ class CastMember:
 
     def _take(self, character: Character, animator: Animator) -> None:
         check_actions(self.scenario, character.name, animator.actions)
+        check_gestures(self.scenario, character)
         self.character, self._animator = character, animator
         self._parts = BodyParts.of(character, animator.scale)
 

@@ -25,6 +25,7 @@ from cubeling.characters.behaviour import (
     DialogueTurn,
     read_script,
 )
+from cubeling.characters.speech import TaggedText
 from cubeling.tracking import CubeControls, CubeModel
 
 BUNDLED_SCRIPT = Path(__file__).with_name("vleo.xml")
@@ -51,6 +52,9 @@ class DialogueScenario:
 
     asked: ClassVar[Mapping[str, str]]
     """See `AskingScenario`."""
+
+    gestures: ClassVar[Mapping[str, str]]
+    """See `GesturingScenario`."""
 
     name: str
     summary: str
@@ -181,12 +185,18 @@ def dialogue_scenario(path: str | Path, name: str | None = None) -> type[Dialogu
     for action in script.actions("do"):
         if action.argument not in ("idle", "move"):
             asked.setdefault(action.argument, script.place(action.line))
+    gestures: dict[str, str] = {}
+    for action in script.actions("say"):
+        for _, text in action.argument:
+            for span in TaggedText.read(text).spans:
+                gestures.setdefault(span.name, script.place(action.line))
     folder = Path(path).parent
     members = {
         "__module__": __name__,
         "__doc__": script.summary,
         "script": script,
         "asked": asked,
+        "gestures": gestures,
         "name": name or str(path),
         "summary": script.summary,
         "character": _beside(folder, script.character),

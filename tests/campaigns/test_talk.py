@@ -1,0 +1,33 @@
+"""The campaign of talks finds dead ends, silence for ever and repetition."""
+
+from dataclasses import replace
+
+import pytest
+
+from cubeling.app.scenarios.talk import Talk
+from tests.campaigns.talk import run
+
+SCRIPT = Talk.script
+
+
+@pytest.mark.slow(reason="a thousand turns with a whole script")
+def test_the_bundled_script_has_no_dead_end():
+    assert not run(1000, 3).failures
+
+
+@pytest.mark.parametrize(
+    ("without", "failure"), [("anything", "no answer"), ("silence", "silence for ever")]
+)
+def test_a_dead_end_is_found(without, failure):
+    units = tuple(each for each in SCRIPT.units if each.name != without)
+    assert len(units) == len(SCRIPT.units) - 1
+    failures = run(150, 1, replace(SCRIPT, units=units)).failures
+    assert any(each.startswith(failure) for each in failures)
+
+
+def test_repetition_is_found(monkeypatch):
+    from cubeling.characters.behaviour import Dialogue
+
+    monkeypatch.setattr(Dialogue, "_choose_text", lambda self, texts, line: texts.of("en")[0])
+    failures = run(200, 1, replace(SCRIPT, units=SCRIPT.units[-2:])).failures
+    assert any(each.startswith("three times running") for each in failures)
