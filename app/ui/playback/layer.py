@@ -131,6 +131,8 @@ class PlaybackLayer:
         """Show another state of the session."""
         if status == self._status:
             return
+        if status.listens and not self._status.listens:
+            self.shows_scenarios = False  # who has come to talk can type at once
         self._status, self._changed = status, True
         if self._menu is not None:
             self._menu.update(self._choices, status.looking)

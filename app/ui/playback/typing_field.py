@@ -4,7 +4,7 @@ from functools import lru_cache
 
 from cubeling.app.ui.canvas import Canvas, Card, text_width
 from cubeling.app.ui.cards.layout import CARD_GAP, CARD_MARGIN, HINT_HEIGHT, HINT_ROOM, HINT_TOP
-from cubeling.app.ui.palette import INK, QUIET, RULE
+from cubeling.app.ui.palette import INK, QUIET
 
 MAX_TYPED = 200
 """Longest line [characters]."""
@@ -68,10 +68,10 @@ def _draw(text: str, is_open: bool, room: float, scale: float) -> Canvas:
         while text_width(shown, TEXT_SIZE) > room - 60:  # its end is what is being typed
             shown = shown[1:]
         canvas.text(24, 32, shown, TEXT_SIZE, INK)
-        end = 26 + text_width(shown, TEXT_SIZE)
+        end = 30 + text_width(shown, TEXT_SIZE)
         canvas.line([[end, 13], [end, 35]], INK, 2)
     else:
         words = EMPTY_WORDS if is_open else CLOSED_WORDS
         size = min(TEXT_SIZE, TEXT_SIZE * (room - 48) / text_width(words, TEXT_SIZE))
-        canvas.text(24, 32, words, size, QUIET if is_open else RULE)
+        canvas.text(24, 32, words, size, QUIET)
     return canvas
