@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from cubeling.characters.dialogue.patterns import FILLED, Pattern
+from cubeling.characters.dialogue.patterns import FILLED, WordPattern
 from cubeling.characters.dialogue.script import (
     ANY_LANGUAGE,
     DialogueScript,
     Localized,
     ScriptItem,
-    Transition,
     Unit,
+    UnitTransition,
 )
 from cubeling.characters.errors import CharacterError
 from cubeling.toml_file import printable
@@ -75,7 +75,7 @@ def _check_loops(script: DialogueScript, unit: Unit) -> None:
     """Refuse a circle of transitions that wait for nothing: it would never end."""
     done: set[str] = set()
     for first in unit.states:
-        on_way: dict[str, Iterator[Transition]] = {first: _unwaiting(unit, first)}
+        on_way: dict[str, Iterator[UnitTransition]] = {first: _unwaiting(unit, first)}
         while on_way:
             state = next(reversed(on_way))
             transition = next(on_way[state], None)
@@ -94,14 +94,14 @@ def _check_loops(script: DialogueScript, unit: Unit) -> None:
                 on_way[target] = _unwaiting(unit, target)
 
 
-def _unwaiting(unit: Unit, state: str) -> Iterator[Transition]:
+def _unwaiting(unit: Unit, state: str) -> Iterator[UnitTransition]:
     return iter([each for each in unit.states[state].transitions if not each.waits])
 
 
-def _check_fallback(script: DialogueScript, transition: Transition) -> None:
+def _check_fallback(script: DialogueScript, transition: UnitTransition) -> None:
     """Refuse an answer to everything that is always the same."""
     is_open = any(
-        isinstance(pattern, Pattern) and pattern.is_open
+        isinstance(pattern, WordPattern) and pattern.is_open
         for condition in transition.conditions
         if isinstance(condition.argument, Localized)
         for _, pattern in condition.argument
@@ -144,7 +144,7 @@ def _remembered(script: DialogueScript) -> set[str]:
     for transition in script.transitions:
         for condition in transition.conditions:
             if isinstance(condition.argument, Localized):
-                patterns = (each for _, each in condition.argument if isinstance(each, Pattern))
+                patterns = (each for _, each in condition.argument if isinstance(each, WordPattern))
                 found.update(slot for pattern in patterns for slot in pattern.slots)
     return found
 

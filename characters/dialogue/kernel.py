@@ -16,10 +16,10 @@ import numpy as np
 
 from cubeling.characters.dialogue.checking import SAID_SLOT
 from cubeling.characters.dialogue.patterns import Heard, fill
-from cubeling.characters.dialogue.script import DialogueScript, Localized, Transition, Unit
+from cubeling.characters.dialogue.script import DialogueScript, Localized, Unit, UnitTransition
 from cubeling.characters.dialogue.vocabulary import (
     CORE_VOCABULARY,
-    Moment,
+    DialogueMoment,
     Slots,
     TurnDraft,
     Vocabulary,
@@ -104,7 +104,7 @@ class DialogueState:
 
 class _Step(NamedTuple):
     unit: Unit
-    transition: Transition
+    transition: UnitTransition
     slots: Slots
 
 
@@ -185,7 +185,9 @@ class Dialogue:
         answered = ""
         for _ in range(MAX_STEPS):
             quiet = now - state.quiet_since
-            moment = Moment(heard, language, spelled, feelings, state.profile, quiet, False, world)
+            moment = DialogueMoment(
+                heard, language, spelled, feelings, state.profile, quiet, False, world
+            )
             step = self._choose(moment, only_answers=busy and not answered)
             if step is None and answered == "" and state.waiting:
                 heard = state.waiting.pop(0)  # nobody answers the one before
@@ -216,7 +218,7 @@ class Dialogue:
         language = spelling.language_of(heard.plain, language)
         return language, spelling.correct(heard.plain, language)
 
-    def _choose(self, moment: Moment, *, only_answers: bool) -> _Step | None:
+    def _choose(self, moment: DialogueMoment, *, only_answers: bool) -> _Step | None:
         """Choose the unit that takes a step, and the step; None if none can."""
         state = self.state
         for group in (
@@ -235,7 +237,7 @@ class Dialogue:
                 return steps[self._draw(len(steps))]
         return None
 
-    def _steps(self, unit: Unit, moment: Moment, *, only_answers: bool) -> list[_Step]:
+    def _steps(self, unit: Unit, moment: DialogueMoment, *, only_answers: bool) -> list[_Step]:
         """Return the steps that a unit can take."""
         steps = []
         kinds = self._vocabulary.conditions
@@ -253,7 +255,7 @@ class Dialogue:
                     steps.append(_Step(unit, transition, slots))
         return steps
 
-    def _repeats(self, unit: Unit, transition: Transition, language: str) -> bool:
+    def _repeats(self, unit: Unit, transition: UnitTransition, language: str) -> bool:
         """Return whether a transition could only lead to what was said twice running.
 
         What follows without waiting counts: no input is taken for an answer that cannot be given.

@@ -59,7 +59,7 @@ class Heard:
 
 
 @dataclass(frozen=True)
-class Pattern:
+class WordPattern:
     """A pattern of words: `*` stands for any number of them, `{slot}` for one to remember."""
 
     text: str
@@ -76,12 +76,12 @@ class Pattern:
     """Names of what it remembers."""
 
     @classmethod
-    def read(cls, text: str) -> "Pattern":
+    def read(cls, text: str) -> "WordPattern":
         """Return the pattern of a text.
 
-        >>> Pattern.read("* my name is {name} *").match(Heard.of("Well, my name is Bob!"))
+        >>> WordPattern.read("* my name is {name} *").match(Heard.of("Well, my name is Bob!"))
         {'name': 'Bob'}
-        >>> Pattern.read("hello *").match(Heard.of("oh hello")) is None
+        >>> WordPattern.read("hello *").match(Heard.of("oh hello")) is None
         True
 
         Raises
@@ -145,9 +145,9 @@ def _expression(parts: list[list[str]]) -> str:
     return first + searched + (rf".*(?<!\S){last}" if last else ".*")
 
 
-def patterns_of(text: str) -> tuple[Pattern, ...]:
+def patterns_of(text: str) -> tuple[WordPattern, ...]:
     """Return the patterns of a text that `|` separates."""
-    return tuple(map(Pattern.read, text.split("|")))
+    return tuple(map(WordPattern.read, text.split("|")))
 
 
 def fill(text: str, profile: Mapping[str, str]) -> str:

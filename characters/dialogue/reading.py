@@ -22,15 +22,15 @@ from pathlib import Path
 from typing import Any
 
 from cubeling.characters.dialogue.checking import check_script
-from cubeling.characters.dialogue.patterns import Heard, Pattern
+from cubeling.characters.dialogue.patterns import Heard, WordPattern
 from cubeling.characters.dialogue.script import (
     ANY_LANGUAGE,
     DialogueScript,
     Localized,
     ScriptItem,
-    Transition,
     Unit,
     UnitState,
+    UnitTransition,
 )
 from cubeling.characters.dialogue.spelling import Spelling, WordSet
 from cubeling.characters.dialogue.vocabulary import CORE_VOCABULARY, Vocabulary
@@ -124,7 +124,7 @@ class _Reader:
         transitions = tuple(self._transition(each, name) for each in element.children)
         return UnitState(name, transitions, self._flag(element, "accepting"), element.line)
 
-    def _transition(self, element: XmlElement, state: str) -> Transition:
+    def _transition(self, element: XmlElement, state: str) -> UnitTransition:
         self._expect(element, "transition", "to")
         known = self._vocabulary
         conditions, actions = list[ScriptItem](), list[ScriptItem]()
@@ -135,7 +135,7 @@ class _Reader:
                 actions.append(self._item(each, known.actions))
             else:
                 raise self._error(each, f"<{each.tag}> is no <condition> or <action>")
-        return Transition(
+        return UnitTransition(
             element.attributes.get("to", state),
             tuple(conditions),
             tuple(actions),
@@ -204,7 +204,7 @@ def spelling_of(languages: tuple[str, ...], units: tuple[Unit, ...]) -> Spelling
             language = languages[0] if code == ANY_LANGUAGE else code
             if language not in known:
                 continue
-            if isinstance(each, Pattern | WordSet):
+            if isinstance(each, WordPattern | WordSet):
                 matched[language].update(each.words)
             else:
                 known[language].update(Heard.of(TaggedText.read(each).text).plain)

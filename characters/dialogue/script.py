@@ -44,7 +44,7 @@ class ScriptItem:
 
 
 @dataclass(frozen=True)
-class Transition:
+class UnitTransition:
     """A step of a unit from one state to another."""
 
     target: str
@@ -73,7 +73,7 @@ class UnitState:
     name: str
     """Its name in the unit."""
 
-    transitions: tuple[Transition, ...]
+    transitions: tuple[UnitTransition, ...]
     """What can happen in it."""
 
     accepting: bool
@@ -145,7 +145,7 @@ class DialogueScript:
         return f"{self.name}:{line}"
 
     @property
-    def transitions(self) -> Iterator[Transition]:
+    def transitions(self) -> Iterator[UnitTransition]:
         """All transitions of all units."""
         return (
             transition

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Self
 
 from cubeling.affect import OCC_FACES
-from cubeling.characters.dialogue.patterns import Heard, Pattern, fill, patterns_of
+from cubeling.characters.dialogue.patterns import Heard, WordPattern, fill, patterns_of
 from cubeling.characters.dialogue.script import ANY_LANGUAGE, Localized
 from cubeling.characters.dialogue.spelling import WordSet
 from cubeling.characters.errors import CharacterError
@@ -26,7 +26,7 @@ GESTURE_TAGS = ("begin_gesture", "end_gesture", "topic")
 
 
 @dataclass(frozen=True)
-class Moment:
+class DialogueMoment:
     """What a condition is asked of: one unit at one time."""
 
     heard: Heard | None
@@ -90,7 +90,7 @@ class ConditionKind:
     read: Callable[[XmlElement], Any]
     """Returns its argument; raises CharacterError for one of no use."""
 
-    holds: Callable[[Moment, Any], Slots | None]
+    holds: Callable[[DialogueMoment, Any], Slots | None]
     """Returns what is to be remembered if it holds, else None."""
 
     waits: Callable[[Any], bool] = lambda _: False
@@ -176,7 +176,7 @@ def only_text(element: XmlElement) -> str:
     return text
 
 
-def _patterns(element: XmlElement) -> Localized[Pattern]:
+def _patterns(element: XmlElement) -> Localized[WordPattern]:
     texts = localized_texts(element)
     return Localized(
         {
@@ -186,7 +186,7 @@ def _patterns(element: XmlElement) -> Localized[Pattern]:
     )
 
 
-def _matches(moment: Moment, patterns: Localized[Pattern]) -> Slots | None:
+def _matches(moment: DialogueMoment, patterns: Localized[WordPattern]) -> Slots | None:
     heard = moment.heard
     if heard is None:
         return None
@@ -212,7 +212,7 @@ def _topics(element: XmlElement) -> Localized[WordSet]:
     return Localized(sets)
 
 
-def _is_about(moment: Moment, topics: Localized[WordSet]) -> Slots | None:
+def _is_about(moment: DialogueMoment, topics: Localized[WordSet]) -> Slots | None:
     heard = moment.heard
     if heard is None or not heard.typed:
         return None

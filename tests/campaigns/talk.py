@@ -25,7 +25,7 @@ from cubeling.affect import OCC_FACES
 from cubeling.app.scenarios.dialogue.scenario import BUNDLED_SCRIPT
 from cubeling.app.scenarios.dialogue.vocabulary import TALK_VOCABULARY
 from cubeling.characters.behaviour import Dialogue, DialogueScript, estimate, read_script
-from cubeling.characters.dialogue.patterns import Pattern
+from cubeling.characters.dialogue.patterns import WordPattern
 from cubeling.characters.dialogue.script import Localized
 from cubeling.characters.dialogue.spelling import WordSet
 from cubeling.characters.speech import TaggedText
@@ -75,7 +75,7 @@ def sentences_of(script: DialogueScript) -> list[str]:
         for item in transition.conditions:
             if isinstance(item.argument, Localized):
                 for _, each in item.argument:
-                    if isinstance(each, Pattern):
+                    if isinstance(each, WordPattern):
                         found.append(each.text)
                     elif isinstance(each, WordSet):
                         found += sorted(each.words)

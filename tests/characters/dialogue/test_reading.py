@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cubeling.characters.dialogue.patterns import Heard, Pattern
+from cubeling.characters.dialogue.patterns import Heard, WordPattern
 from cubeling.characters.dialogue.reading import read_script
 from cubeling.characters.errors import CharacterError
 
@@ -148,11 +148,11 @@ def test_a_script_that_cannot_be_played_is_named_by_line(name: str, tmp_path: Pa
     ],
 )
 def test_patterns(pattern: str, text: str, slots: dict[str, str] | None) -> None:
-    assert Pattern.read(pattern).match(Heard.of(text)) == slots
+    assert WordPattern.read(pattern).match(Heard.of(text)) == slots
 
 
 def test_a_pattern_of_many_stars_takes_time_that_is_linear_in_the_text() -> None:
-    pattern = Pattern.read("* " + " * ".join(["a"] * 18) + " b")
+    pattern = WordPattern.read("* " + " * ".join(["a"] * 18) + " b")
 
     def seconds(words: int) -> float:
         text = "a " * words
@@ -168,4 +168,4 @@ def test_a_pattern_of_many_stars_takes_time_that_is_linear_in_the_text() -> None
 @pytest.mark.parametrize("pattern", ["", " | a", "{Name}", "{", "{a} {a}", "?!", "a " * 41])
 def test_a_pattern_of_no_use_is_refused(pattern: str) -> None:
     with pytest.raises(CharacterError):
-        [Pattern.read(each) for each in pattern.split("|")]
+        [WordPattern.read(each) for each in pattern.split("|")]
