@@ -84,6 +84,10 @@ class SlowScreen(NullScreen):
         return super().show(step, robot)
 
 
+def recorded_inputs(timestamp):
+    return Inputs(clear=timestamp in STARTED_OVER)
+
+
 @pytest.fixture
 def play_slowly(short_session):
     """Run a session on a slow computer; return its steps and its summary."""
@@ -97,8 +101,9 @@ def play_slowly(short_session):
         with open_session(options, screen=screen) as session:
             pace = session.pace and Pace(session.pace.max_late, time, time.sleep)
             played = replace(session, pace=pace)
-            played.recorded_inputs = lambda now: Inputs(clear=now in STARTED_OVER)
-            summary = run(played)
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(played, "recorded_inputs", recorded_inputs)
+                summary = run(played)
         return screen.steps, summary
 
     return run_session

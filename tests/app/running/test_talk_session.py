@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.scenario import Inputs, Reply
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
@@ -19,7 +21,7 @@ from cubeling.app.running.typed_lines import TypedLines
 from cubeling.app.session import SessionOptions
 from cubeling.app.speaking import voices
 from cubeling.app.ui.screen import NullScreen
-from cubeling.characters.speech import VoiceError
+from cubeling.characters.speech import Manner, VoiceError
 from cubeling.characters.speech.voices import Voice
 from cubeling.tracking import CubeState
 from cubeling.tracking.synthetic import open_synthetic
@@ -27,6 +29,7 @@ from tests.app import session_parts
 from tests.app.scripted import VARIANCE, Blank
 from tests.app.speaking.test_speaker import BUZZ
 
+USUAL = Manner()
 RATE = 30
 CUT_S = 5.6
 """When the player interrupts [s]."""
@@ -43,7 +46,7 @@ class Player(NullScreen):
     """Types and interrupts at some times, and keeps the steps."""
 
     def __init__(self) -> None:
-        self.steps = []
+        self.steps: list[Step] = []
         self._asked = sorted(ASKED.items(), key=lambda pair: pair[0])
 
     def show(self, step, robot):
@@ -178,7 +181,7 @@ def test_typed_lines_wait_for_the_end_of_a_reply_and_end_the_session(talked):
     quiet = replace(steps[20], outcome=replace(steps[20].outcome, reply=None))
     later = [replace(quiet, frame=replace(quiet.frame, timestamp=13.0 + k)) for k in range(20)]
     for step in [*steps, *later]:
-        inputs = typing.show(step, None)
+        inputs = typing.show(step, RobotView("none", 0.0, ""))
         if inputs.typed:
             said[inputs.typed] = step
         if typing.closed:
@@ -190,13 +193,15 @@ def test_typed_lines_wait_for_the_end_of_a_reply_and_end_the_session(talked):
     assert typing.closed
 
 
-class SlowVoice:
+class SlowVoice(Voice):
     """A voice that takes its time, and says what it was asked for."""
 
     def __init__(self, speech, seconds):
-        self.asked, self._speech, self._seconds = [], speech, seconds
+        super().__init__(("slow",))
+        self.asked: list[str] = []
+        self._speech, self._seconds = speech, seconds
 
-    def say(self, text, language="en", manner=None):
+    def say(self, text, language="en", manner=USUAL):
         self.asked.append(text)
         time.sleep(self._seconds)
         return replace(self._speech, text=text, words=())
@@ -220,7 +225,7 @@ def test_the_speaker_says_only_what_is_still_wanted(talked):
 
     for text in ("one", "two", "three"):
         speaker.hear(wanting(text))
-    found = {}
+    found: dict[str, SpokenLine] = {}
     for _ in range(100):
         found = {**found, **speaker.lines(0.0)}
         if found:

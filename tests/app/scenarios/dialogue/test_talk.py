@@ -1,11 +1,12 @@
 """The dialogue in play: what is said is heard, cut off and remembered by the frame."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from cubeling.affect import OCC_FACES
+from cubeling.affect import OCC_FACES, Emotion
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings, check_gestures
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.pipeline.table.spoken_line import Speaking, SpokenLine
@@ -32,16 +33,16 @@ class Conversation:
         self.scenario = scenario(CUBE, ScenarioSettings(**settings))
         self.speaking = Speaking()
         self.replies: list[str] = []
-        self.emotions: list = []
+        self.emotions: list[Emotion] = []
         self.now = 0.0
         self._due: list[tuple[int, SpokenLine]] = []
 
-    def frame(self, controls: CubeControls | None = None, **asked) -> Outcome:
+    def frame(self, controls: CubeControls | None = None, **asked: Any) -> Outcome:
         controls = controls or self.hand.frame()
         self.now = controls.timestamp
         line = self._due.pop()[1] if self._due and self.hand.frames >= self._due[0][0] else None
         inputs = Inputs(line=line, **asked)
-        outcome = self.scenario.update(controls, Situation(), inputs)
+        outcome: Outcome = self.scenario.update(controls, Situation(), inputs)
         silence = inputs.clear or outcome.hush
         self.speech = self.speaking.update(line, outcome.command, silence=silence)
         self.emotions.append(outcome.emotion.emotion)
@@ -99,7 +100,7 @@ def test_an_interruption_silences_it_in_the_same_frame(talk, cut):
         for _ in range(30):
             talk.frame(talk.hand.frame(visible=False))
     else:
-        asked = {
+        asked: dict[str, dict[str, Any]] = {
             "line": {"typed": "hello"},
             "typing": {"hush": True},
             "start over": {"clear": True},
