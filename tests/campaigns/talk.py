@@ -40,7 +40,7 @@ MAX_SILENCE_S = 60.0
 """A character that says nothing for so long, while nobody else does either, is silent for ever."""
 
 MAX_ANSWER_S = 0.2
-"""Longest time of one answer [s]."""
+"""Longest time of one answer, on the processor [s]."""
 
 MAX_STATE_BYTES = 40_000
 """Largest state of a dialogue [B]."""
@@ -181,11 +181,11 @@ class Talk:
 
     def _update(self, text: str) -> bool:
         """Advance the dialogue, check what it does, and return whether it said something."""
-        began = time.perf_counter()
+        began = time.process_time()
         turn = self._dialogue.update(
             self._now, busy=self._now < self._speaks_until, feelings=self._feelings
         )
-        took = time.perf_counter() - began
+        took = time.process_time() - began  # of this process: others may be busy, too
         self._score.slowest_s = max(self._score.slowest_s, took)
         if took > MAX_ANSWER_S:
             self._score.counts["slow"] += 1
@@ -230,7 +230,7 @@ def run(turns: int, seed: int, script: DialogueScript | None = None) -> Score:
         score.state_bytes.append(talk.state_bytes)
     if max(score.state_bytes) > MAX_STATE_BYTES:
         score.fail(f"a state of {max(score.state_bytes)} bytes")
-    if score.counts["slow"] > turns / 10_000:  # a computer that is busy with something else
+    if score.counts["slow"]:
         score.fail(f"{score.counts['slow']} answers took longer than {MAX_ANSWER_S:g} s")
     return score
 

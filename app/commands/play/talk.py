@@ -22,7 +22,6 @@ from cubeling.app.commands.play.play_options import (
     OutputOption,
     PersonalityOption,
     RecordOption,
-    RobotOption,
     RobotSettingsOption,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
@@ -75,7 +74,10 @@ def talk(
             "camera.",
         ),
     ] = None,
-    robot: RobotOption = "sim",
+    robot: Annotated[
+        str,
+        typer.Option("--robot", "-r", help="What feels along: a robot as for cubeling play."),
+    ] = "sim",
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     record: RecordOption = None,
