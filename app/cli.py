@@ -29,6 +29,7 @@ GROUPS = {
         "demo": "See it work: with your camera, with the bundled recording, or as a video.",
         "play": "Play with the cube in front of a camera.",
         "talk": "Talk with a character: type, and it answers with voice, face and gestures.",
+        "show": "Show a play: several characters speak and act by one file.",
         "replay": "Play a recorded session: in a window, to a video, or only to its summary.",
         "cube": "Write a cube as a sheet to print, cut, fold and glue.",
         "calibrate": "Measure the camera's lens: wave the cube in front of it for about "

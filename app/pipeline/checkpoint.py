@@ -48,7 +48,9 @@ class _Writer(pickle.Pickler):
 
     def persistent_id(self, obj: Any) -> int | None:
         settings = getattr(type(obj), "__dataclass_params__", None)  # of a dataclass
-        if not (settings and settings.frozen) and not isinstance(obj, SHARED_TYPES):
+        # Classes too: one that was made of a file is in no module.
+        shared = isinstance(obj, (type, *SHARED_TYPES))
+        if not (settings and settings.frozen) and not shared:
             return None
         self.shared.append(obj)
         return len(self.shared) - 1

@@ -49,15 +49,27 @@ RULES_SUFFIX = ".toml"
 SCRIPT_SUFFIX = ".xml"
 """Ending of a scenario that is a dialogue: see `cubeling.app.scenarios.dialogue`."""
 
+SHOW_SUFFIX = ".show"
+"""Ending of a scenario that is a play: see `cubeling.app.show`."""
+
 _RULES = "cubeling.app.scenarios.rules"
+_SHOW = "cubeling.app.show"
 _DIALOGUE = "cubeling.app.scenarios.dialogue.scenario:dialogue_scenario"
 CHECKS = Registry[Callable[[str], "Any"]](
-    {RULES_SUFFIX: f"{_RULES}.file:read_rules", SCRIPT_SUFFIX: _DIALOGUE}
+    {
+        RULES_SUFFIX: f"{_RULES}.file:read_rules",
+        SCRIPT_SUFFIX: _DIALOGUE,
+        SHOW_SUFFIX: f"{_SHOW}.script:read_show",
+    }
 )
 """What reads a file that is a scenario, by its suffix, to refuse what cannot be played."""
 
 FILES = Registry[Callable[[str], "Any"]](
-    {RULES_SUFFIX: f"{_RULES}.scenario:rules_scenario", SCRIPT_SUFFIX: _DIALOGUE}
+    {
+        RULES_SUFFIX: f"{_RULES}.scenario:rules_scenario",
+        SCRIPT_SUFFIX: _DIALOGUE,
+        SHOW_SUFFIX: f"{_SHOW}.scenario:show_scenario",
+    }
 )
 """What makes a scenario of it; that of rules loads numpy."""
 

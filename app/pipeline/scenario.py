@@ -58,6 +58,10 @@ class Inputs:
         return () if self.line is None else ("spoken",)
 
 
+OVER_EVENT = "over"
+"""What has happened when a scenario has come to its end."""
+
+
 @dataclass(frozen=True)
 class Reply:
     """Something that a character wants to say: a voice speaks it, and it begins in a later frame.
@@ -204,6 +208,14 @@ class CastScenario(Protocol):
 
     others: tuple[str, ...]
     """The rest of its cast, unless the player chooses one: bundled characters or files."""
+
+
+@runtime_checkable
+class NamingScenario(Protocol):
+    """A scenario that gives its characters names."""
+
+    names: tuple[str, ...]
+    """Those of the whole cast, in its order."""
 
 
 @runtime_checkable

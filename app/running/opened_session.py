@@ -120,7 +120,8 @@ class OpenedSession:
     def listens(self) -> bool:
         """Whether what a player types now is said to the character."""
         scenario = self.playground.scenario
-        return self.replayed is None and isinstance(scenario, ListeningScenario)
+        listens = isinstance(scenario, ListeningScenario) and scenario.listens
+        return self.replayed is None and listens
 
     def keep_lens(self) -> Path | None:
         """Keep the lens of a live camera if play has measured it; return its file, if any."""

@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.output_path import default_folder
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.pipeline.scenario import CastScenario, ListeningScenario
+from cubeling.app.pipeline.scenario import CastScenario, ListeningScenario, NamingScenario
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.kept_lens import LensStore
@@ -57,6 +58,7 @@ def open_session(
     replayed: SessionFile | None = None,
     screen: Screen | None = None,
     typed: Iterable[str] | None = None,
+    until_over: bool = False,
     player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
@@ -80,6 +82,8 @@ def open_session(
     typed
         Lines that are typed in front of the screen, which ends after the last reply; None for
         none.
+    until_over
+        Whether the session ends when the scenario is over.
     player
         Publishes the character's actions and emotions; the caller closes its network.
     ending
@@ -113,6 +117,9 @@ def open_session(
         )
         for name in names_of_cast(options, scenario)
     )
+    if isinstance(scenario, NamingScenario):
+        named = zip(scenario.names, (character, *others), strict=False)
+        character, *others = (replace(each, name=name) for name, each in named)
     if options.idle is not None:
         if options.controller != "tree":
             raise AppError(
@@ -138,7 +145,7 @@ def open_session(
         if screen is None:
             sound = open_sound(options, character, closing)
             screen, context = _open_screen(options, source, sound, preferences, monitor, closing)
-        if typed is not None:
+        if typed is not None or until_over:
             screen = TypedLines(screen, typed)
         playground = Playground(
             scenario,

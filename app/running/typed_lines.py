@@ -1,9 +1,9 @@
-"""Lines that are typed by nobody: each as soon as the character has finished."""
+"""Sessions that nobody watches and that end: with the last line that is typed, or by themselves."""
 
 from collections.abc import Iterable
 from dataclasses import replace
 
-from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.scenario import OVER_EVENT, Inputs
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import SessionRequest
@@ -27,12 +27,14 @@ class TypedLines:
     screen
         Where the steps go; the caller closes it.
     lines
-        What is typed. Empty ones are left out; they are read one by one, as from a terminal.
+        What is typed. Empty ones are left out; they are read one by one, as from a terminal. None
+        to type nothing, and to end when the scenario is over.
     """
 
-    def __init__(self, screen: Screen, lines: Iterable[str]) -> None:
+    def __init__(self, screen: Screen, lines: Iterable[str] | None) -> None:
         self._screen = screen
-        self._lines = (line.strip() for line in lines if line.strip())
+        self._ends = lines is not None
+        self._lines = (line.strip() for line in lines or () if line.strip())
         self._next: str | None = ""
         self._quiet_since: float | None = None
         self._over = False
@@ -41,8 +43,10 @@ class TypedLines:
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step, and return the next line if it is time."""
         inputs = self._screen.show(step, robot)
-        now, speech = step.frame.timestamp, step.command.speech
-        talks = step.outcome.reply is not None or (speech is not None and now < speech.end)
+        now = step.frame.timestamp
+        speeches = [each.command.speech for each in step.cast]
+        talks = any(speech is not None and now < speech.end for speech in speeches)
+        talks |= any(each.outcome.reply is not None for each in step.cast)
         if talks or self._quiet_since is None or not step.posed.visible:
             self._quiet_since = now
         quiet = now - self._quiet_since
@@ -51,7 +55,10 @@ class TypedLines:
         if self._next:
             said, self._next, self._quiet_since = self._next, "", now
             return replace(inputs, typed=said)
-        self._over = self._next is None and quiet >= END_S
+        if self._ends:
+            self._over = self._next is None and quiet >= END_S
+        else:
+            self._over = OVER_EVENT in step.outcome.events
         return inputs
 
     def preview(self, step: Step, robot: RobotView) -> None:

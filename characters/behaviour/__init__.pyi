@@ -104,3 +104,8 @@ from cubeling.characters.dialogue.vocabulary import (
     act as act,
     only_text as only_text,
 )
+from cubeling.characters.xml_elements import (
+    XmlElement as XmlElement,
+    XmlLimits as XmlLimits,
+    read_xml as read_xml,
+)

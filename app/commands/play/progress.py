@@ -42,6 +42,7 @@ def play_session(
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
     typed: Iterable[str] | None = None,
+    until_over: bool = False,
 ) -> None:
     """Open a session, run it, and print its summary and what was kept; see `open_session`.
 
@@ -61,6 +62,7 @@ def play_session(
             ending=ending,
             preferences=preferences,
             typed=typed,
+            until_over=until_over,
         ) as session:
             at_end.callback(report_kept, session, console)
             if options.intrinsics is None and session.source.intrinsics is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -33,7 +34,6 @@ from cubeling.app.ui.display import has_display
 from cubeling.files import FileKind
 
 if TYPE_CHECKING:
-    from cubeling.app.session import SessionOptions
     from cubeling.tracking import FrameSource
 
 BUNDLED = "talk"
@@ -141,7 +141,8 @@ def talk(
     with ExitStack() as closing:
         camera = None
         if options.windowed and source is None and typed is None:
-            options, camera = _with_camera(options, closing)
+            camera = opened_camera(closing)
+            options = options if camera else replace(options, source=DESK)
         lines = _lines(typed) if written or typed else None
         play_session(options, f"talking: {script}", source=camera, preferences=kept, typed=lines)
 
@@ -155,17 +156,13 @@ def _lines(typed: Path | None) -> Iterable[str]:
     return sys.stdin if typed is None else read_typed(typed)
 
 
-def _with_camera(
-    options: SessionOptions, closing: ExitStack
-) -> tuple[SessionOptions, FrameSource | None]:
-    """Open the first camera; without one, say so and take the drawn desk."""
-    from dataclasses import replace
-
+def opened_camera(closing: ExitStack) -> FrameSource | None:
+    """Open the first camera; without one, say so and return None."""
     from cubeling.tracking import TrackingError, open_source
 
     try:
-        return options, closing.enter_context(open_source(DEFAULT_CAMERA))
+        return closing.enter_context(open_source(DEFAULT_CAMERA))
     except TrackingError as error:
         line = f"[dim]No live picture, so the desk is drawn: {escape(str(error))}[/]"
         Console().print(line, soft_wrap=True)
-        return replace(options, source=DESK), None
+        return None

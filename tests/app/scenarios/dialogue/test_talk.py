@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from cubeling.affect import OCC_FACES, Emotion
+from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings, check_gestures
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.pipeline.table.spoken_line import Speaking, SpokenLine
@@ -202,6 +203,18 @@ def test_the_words_of_a_cube(hand):
         "kiss, strongly",
         "kiss, softly",
     ]
+
+
+def test_a_checkpoint_goes_on_as_the_talk_does(talk):
+    talk.wait(3.0)
+    talk.say("hello, my name is Bob")
+    talk.wait(6.0)
+    copy = Checkpoint({"scenario": talk.scenario}).content()["scenario"]
+    frames, before = talk.hand.frames, len(talk.replies)
+    first = [talk.say("who am i, and what is my name?"), talk.profile["name"]]
+    talk.scenario, talk.hand.frames = copy, frames
+    assert [talk.say("who am i, and what is my name?"), talk.profile["name"]] == first
+    assert len(talk.replies) == before + 2
 
 
 def test_it_begins_in_the_language_that_is_chosen(hand):

@@ -1,0 +1,93 @@
+"""The command `cubeling show`."""
+
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cubeling.app.commands.character_options import VoiceOption
+from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
+from cubeling.app.commands.play.play_options import (
+    DEFAULT_CAMERA,
+    FolderOption,
+    OutputOption,
+    RecordOption,
+    SourceOption,
+)
+from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
+from cubeling.app.commands.play.talk import DESK, opened_camera
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.registry import SHOW_SUFFIX
+from cubeling.app.scenarios import check_scenario
+from cubeling.app.ui.display import has_display
+
+BUNDLED = ("antigone",)
+"""Names of the plays that come with the program."""
+
+
+@with_preferences
+def show(
+    play: Annotated[
+        str, typer.Argument(help="A .show file, see docs/talking.md; or antigone.")
+    ] = BUNDLED[0],
+    source: SourceOption = DEFAULT_CAMERA,
+    language: Annotated[str | None, typer.Option(help="none to show it without a sound.")] = None,
+    output: OutputOption = None,
+    overwrite: OverwriteOption = False,
+    record: RecordOption = None,
+    voice: VoiceOption = None,
+    codec: VideoCodecOption = "auto",
+    folder: FolderOption = None,
+    *,
+    preferences: GivenPreferences,
+) -> None:
+    """Show a play: several characters speak and act by one file.
+
+    With --output or --record it is shown on a drawn desk, unless --source says otherwise.
+
+    Example: cubeling show antigone -o antigone.mp4
+    """
+    path = str(_bundled(play)) if play in BUNDLED else play
+    if not path.endswith(SHOW_SUFFIX):
+        raise AppError(f"'{play}' is no play: give a .show file, see docs/talking.md")
+    check_scenario(path)
+    from cubeling.app.running.option_checks import check_inputs, check_output_paths
+    from cubeling.app.session import SessionOptions
+
+    written = output is not None or record is not None
+    options = SessionOptions(
+        scenario=path,
+        source=DESK if written and source == DEFAULT_CAMERA else source,
+        language=language,
+        voice=voice,
+        record=record,
+        output=output,
+        overwrite=overwrite,
+        pictures=output is not None or not written,
+        video_codec=codec,
+        folder=folder,
+    )
+    check_output_paths(options)
+    options, kept = preferences.open(options)
+    check_inputs(options)
+    if options.windowed and not has_display():
+        raise AppError("there is no display here: write a video with --output FILE.mp4")
+    from cubeling.app.commands.play.progress import play_session
+
+    with ExitStack() as closing:
+        camera = None
+        if options.windowed and source == DEFAULT_CAMERA:
+            camera = opened_camera(closing)
+            options = options if camera else replace(options, source=DESK)
+        play_session(
+            options, f"showing {play}", source=camera, preferences=kept, until_over=written
+        )
+
+
+def _bundled(name: str) -> Path:
+    """Return the file of a play that comes with the program."""
+    import cubeling.app.show as folder
+
+    return Path(folder.__path__[0]) / f"{name}{SHOW_SUFFIX}"

@@ -1,0 +1,1 @@
+"""Plays: several characters speak and act by one file; see docs/talking.md."""

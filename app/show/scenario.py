@@ -1,0 +1,173 @@
+"""A scenario that is a play: one for each of the cast, which share where it is."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import ClassVar
+
+from cubeling.affect import Personality
+from cubeling.app.pipeline.scenario import (
+    OVER_EVENT,
+    Inputs,
+    Outcome,
+    Reply,
+    Scenario,
+    ScenarioSettings,
+)
+from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.scenarios.dialogue.scenario import DialogueScenario, dialogue_scenario
+from cubeling.app.scenarios.follow import PLAYER_POSITION
+from cubeling.app.scenarios.mood import MoodController
+from cubeling.app.scenarios.presence import Presence
+from cubeling.app.scenarios.rules.scenario import HOME
+from cubeling.app.show.script import Cue, ShowScript, read_show
+from cubeling.app.show.stage_state import StageState
+from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent, RootDelta
+from cubeling.characters.speech import TaggedText
+from cubeling.tracking import CubeControls, CubeModel
+
+
+class ShowScenario:
+    """Plays one of the cast by the file of its class, which `show_scenario` makes.
+
+    Of the first one it makes those of the others (`CastDirector`). Where the file ends with a
+    dialogue, that takes over with its cue, or as soon as the player types: the first character
+    answers from where it is.
+
+    Parameters
+    ----------
+    cube, settings
+        As of every scenario.
+    who
+        The number of the character in the cast.
+    start
+        Where it stands at first.
+    stage
+        What the cast shares; None to make it.
+    """
+
+    script: ClassVar[ShowScript]
+    """The play."""
+
+    asked: ClassVar[Mapping[str, str]]
+    """See `AskingScenario`."""
+
+    gestures: ClassVar[Mapping[str, str]]
+    """See `GesturingScenario`."""
+
+    dialogue: ClassVar[type[DialogueScenario] | None]
+    """What takes over; None for nothing."""
+
+    name: str
+    summary: str
+    cube = "companion"
+    roles: tuple[str, ...] = ()
+    character: str
+    others: tuple[str, ...]
+    names: tuple[str, ...]
+    personality = "heartfelt"
+    has_intensity = False
+    adjustable: tuple[str, ...] = ()
+    listens = True
+
+    def __init__(
+        self,
+        cube: CubeModel,
+        settings: ScenarioSettings,
+        who: int = 0,
+        start: RootDelta = HOME,
+        stage: StageState | None = None,
+    ) -> None:
+        self.start = start
+        self._cube, self._settings, self._who = cube, settings, who
+        self._stage = stage or StageState(self.script)
+        self._presence = Presence()
+        self._mood = MoodController(Personality.load(self.personality))
+        self._saying: Cue | None = None
+        self._talk: DialogueScenario | None = None
+
+    def scenario_of(self, number: int, place: RootDelta) -> Scenario | None:
+        """Return what one of the others plays; see `CastDirector`."""
+        if number >= len(self.script.cast):
+            return None
+        return type(self)(self._cube, self._settings, number, place, self._stage)
+
+    def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
+        """Decide on one frame; see `Scenario.update`."""
+        now, visible = controls.timestamp, self._presence.update(controls)
+        stage = self._stage
+        if self._who == 0:
+            if inputs.clear:
+                self._begin_again()
+            if inputs.typed and self.dialogue is not None:
+                stage.take_over()
+            if visible:
+                stage.advance(now)
+        if stage.talks and self._who == 0 and self.dialogue is not None:
+            self._talk = self._talk or self.dialogue(self._cube, self._settings)
+            return self._talk.update(controls, situation, inputs)
+        if self._saying is not None and inputs.line is not None:
+            stage.spoken(self._saying, now + inputs.line.utterance.duration)
+        return self._carry_out(controls, inputs, visible)
+
+    def _begin_again(self) -> None:
+        stage = self._stage
+        stage.next, stage.since, stage.talks = 0, None, False
+        stage.ongoing.clear()
+        stage.orders.clear()
+        self._talk = None
+
+    def _carry_out(self, controls: CubeControls, inputs: Inputs, visible: bool) -> Outcome:
+        now, reply, hush = controls.timestamp, None, False
+        influences = []
+        for cue in self._stage.take_orders(self._who):
+            if cue.kind == "say":
+                self._saying, hush = cue, True
+                reply = Reply(cue.text, self.script.language)
+            elif cue.kind == "feel":
+                influences.append((cue.text, cue.value))
+            elif self._saying is not None and self._saying.id == cue.text:  # it is cut off
+                self._saying, hush = None, True
+        acting = self._stage.acting(self._who, now)
+        action = "idle" if acting is None else acting.cue.text
+        # A fade leads from all of an action to the least of it.
+        weight = 0.0 if acting is None else 2.0 * acting.share(now) - 1.0
+        emotion = self._mood.update(
+            controls, action if visible else "idle", weight, influences=influences
+        )
+        command = CharacterCommand(
+            timestamp=now,
+            locomotion=LocomotionIntent(facing=PLAYER_POSITION),
+            action=ActionIntent(action, weight),
+            visible=visible,
+        )
+        hint = self.script.summary if controls.visible else "Show me the cube"
+        events = (OVER_EVENT,) if self._stage.is_over(now) else ()
+        return Outcome(command, emotion, hint, action, events=events, reply=reply, hush=hush)
+
+
+def show_scenario(path: str | Path) -> type[ShowScenario]:
+    """Return the scenario of a play; AppError or CharacterError if its file is refused."""
+    script = read_show(path)
+    asked: dict[str, str] = {}
+    gestures: dict[str, str] = {}
+    for cue in script.cues:
+        if cue.kind == "do":
+            asked.setdefault(cue.text, script.place(cue.line))
+        for span in TaggedText.read(cue.text).spans if cue.kind == "say" else ():
+            gestures.setdefault(span.name, script.place(cue.line))
+    first, *others = script.cast
+    members = {
+        "__module__": __name__,
+        "__doc__": script.summary,
+        "script": script,
+        "asked": asked,
+        "gestures": gestures,
+        "dialogue": dialogue_scenario(script.talk) if script.talk else None,
+        "listens": bool(script.talk),
+        "name": str(path),
+        "summary": script.summary,
+        "character": first.body,
+        "others": tuple(each.body for each in others),
+        "names": tuple(each.name for each in script.cast),
+    }
+    return type("FileShow", (ShowScenario,), members)

@@ -1,0 +1,131 @@
+"""Where a play is: which cue comes next, and what goes on."""
+
+import math
+from dataclasses import dataclass, field
+
+from cubeling.app.show.script import Cue, ShowScript
+
+MAX_WAIT_S = 6.0
+"""A voice that has not answered after so long does not answer any more [s]."""
+
+
+@dataclass
+class Ongoing:
+    """Something that a character does since its cue."""
+
+    cue: Cue
+    """The cue."""
+
+    since: float
+    """When its turn came [s]."""
+
+    end: float
+    """When it is over [s]; infinite while that is not known."""
+
+    fades_s: float = 0.0
+    """How long it takes to fade out before its end [s]."""
+
+    def share(self, now: float) -> float:
+        """Return how much of it is left at a time [s], 0…1."""
+        if now >= self.end:
+            return 0.0
+        return min((self.end - now) / self.fades_s, 1.0) if self.fades_s else 1.0
+
+
+@dataclass
+class StageState:
+    """What all of the cast share: plain values, which a checkpoint copies."""
+
+    script: ShowScript
+    """The play."""
+
+    next: int = 0
+    """The cue that comes next."""
+
+    since: float | None = None
+    """When the last cue was carried out [s]; None before the beginning."""
+
+    ongoing: dict[int, Ongoing] = field(default_factory=dict)
+    """What was begun, by the number of its cue."""
+
+    orders: dict[int, list[Cue]] = field(default_factory=dict)
+    """Cues that their characters have not seen yet, by the number in the cast."""
+
+    talks: bool = False
+    """Whether the dialogue has taken over."""
+
+    def advance(self, now: float) -> None:
+        """Carry out all cues whose turn has come at a time [s]."""
+        cues = self.script.cues
+        self.since = now if self.since is None else self.since
+        for each in self.ongoing.values():
+            if each.end == math.inf and now - each.since > MAX_WAIT_S:
+                each.end = now  # no voice has come: the play goes on
+        while self.next < len(cues) and not self.talks and self._is_due(cues[self.next], now):
+            cue = cues[self.next]
+            HANDLERS[cue.kind](self, cue, now)
+            self.next, self.since = self.next + 1, now
+
+    def _is_due(self, cue: Cue, now: float) -> bool:
+        if cue.kind != "wait":
+            return True
+        if not cue.text:
+            return self.since is not None and now - self.since >= cue.seconds
+        return now >= self.named(cue.text).end - cue.seconds
+
+    def named(self, name: str) -> Ongoing:
+        """Return what was begun by the cue of an id."""
+        return next(each for each in self.ongoing.values() if each.cue.id == name)
+
+    def begin(self, cue: Cue, now: float) -> None:
+        """Begin something; when it is over is not known of what is said."""
+        end = math.inf if cue.kind == "say" else now + cue.seconds
+        self.ongoing[self.next] = Ongoing(cue, now, end)
+        self.orders.setdefault(cue.who, []).append(cue)
+
+    def stop(self, cue: Cue, now: float) -> None:
+        """Cut something off, with a fade."""
+        stopped = self.named(cue.text)
+        if now < stopped.end:
+            stopped.end = min(stopped.end, now + cue.seconds)
+            stopped.fades_s = stopped.end - now
+            self.orders.setdefault(stopped.cue.who, []).append(cue)
+
+    def order(self, cue: Cue, now: float) -> None:
+        """Tell a character of a cue that takes no time."""
+        self.orders.setdefault(cue.who, []).append(cue)
+
+    def take_orders(self, who: int) -> list[Cue]:
+        """Return the cues that a character has not seen yet."""
+        return self.orders.pop(who, [])
+
+    def spoken(self, cue: Cue, end: float) -> None:
+        """Note when the line of a cue is over [s]."""
+        for each in self.ongoing.values():
+            if each.cue is cue and each.end == math.inf:
+                each.end = end
+
+    def acting(self, who: int, now: float) -> Ongoing | None:
+        """Return the action of a character that began last and goes on."""
+        own = [e for e in self.ongoing.values() if e.cue.who == who and e.cue.kind == "do"]
+        return next((each for each in reversed(own) if now < each.end), None)
+
+    def is_over(self, now: float) -> bool:
+        """Return whether the last cue was carried out, and nothing goes on."""
+        done = self.next == len(self.script.cues) and not self.talks
+        return done and all(now >= each.end for each in self.ongoing.values())
+
+    def take_over(self) -> None:
+        """Let the dialogue go on from here."""
+        self.talks = True
+
+
+HANDLERS = {
+    "say": StageState.begin,
+    "do": StageState.begin,
+    "stop": StageState.stop,
+    "feel": StageState.order,
+    "wait": lambda state, cue, now: None,
+    "talk": lambda state, cue, now: state.take_over(),
+}
+"""What carries out each kind of cue."""

@@ -1,0 +1,205 @@
+"""Plays: the order and the overlap of their cues, with a voice that is made up."""
+
+import re
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from cubeling.app.pipeline.checkpoint import Checkpoint
+from cubeling.app.pipeline.scenario import OVER_EVENT, Inputs, ScenarioSettings
+from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.scenarios import find_scenario
+from cubeling.app.show.stage_state import MAX_WAIT_S
+from cubeling.app.speaking.line_chooser import LineRequest
+from cubeling.app.speaking.speaker import soundless_line
+from cubeling.bad_input import BadInputError
+from cubeling.characters import RootDelta
+from cubeling.characters.speech import DEFAULT_PROFILE, Manner
+from cubeling.tracking import CubeModel
+
+CUBE = CubeModel.load("companion")
+ANTIGONE = Path("app/show/antigone.show")
+FRAME = 1 / 30
+VOICE_S = 6.0
+"""How long every line of the made up voice is [s]."""
+
+
+class Theatre:
+    """Plays a file with a voice that answers after two frames, and notes what happens."""
+
+    def __init__(self, hand, path, *, voice=True):
+        self.hand, self.voice = hand, voice
+        lead = find_scenario(str(path))(CUBE, ScenarioSettings())
+        others = range(1, len(lead.script.cast))
+        self.cast = [lead, *(lead.scenario_of(number, RootDelta()) for number in others)]
+        self.events = []  # (time, who, what)
+        self._due = {}
+        self._acting = [""] * len(self.cast)
+        self.over = False
+
+    def frame(self, **asked):
+        controls = self.hand.frame()
+        now = controls.timestamp
+        outcomes = []
+        for who, scenario in enumerate(self.cast):
+            frames, line = self._due.get(who, (None, None))
+            line = line if frames is not None and self.hand.frames >= frames else None
+            if line is not None:
+                self._due.pop(who)
+                self.events.append((now, who, "speaks"))
+            inputs = Inputs(line=line, **asked)
+            outcome = scenario.update(controls, Situation(), inputs)
+            outcomes.append(outcome)
+            if outcome.reply is not None:
+                self.events.append((now, who, "reply"))
+                request = LineRequest(outcome.reply.text, "en", Manner())
+                said = soundless_line(request, DEFAULT_PROFILE)
+                said = replace(said, utterance=replace(said.utterance, duration=VOICE_S))
+                if self.voice:
+                    self._due[who] = self.hand.frames + 2, said
+            if outcome.icon != self._acting[who]:
+                self._acting[who] = outcome.icon
+                self.events.append((now, who, outcome.icon))
+        self.over = OVER_EVENT in outcomes[0].events
+        return outcomes
+
+    def play(self, seconds):
+        for _ in range(round(seconds / FRAME)):
+            self.frame()
+            if self.over:
+                return
+
+    def times(self, who, what):
+        return [time for time, number, event in self.events if (number, event) == (who, what)]
+
+
+def test_antigone_and_creon_in_their_order_and_with_their_overlap(hand):
+    theatre = Theatre(hand, ANTIGONE)
+    theatre.play(90.0)
+    assert theatre.over
+    creon, antigone = theatre.times(0, "speaks"), theatre.times(1, "speaks")
+    first, third = creon
+    second, fourth = antigone
+    assert first < second < third < fourth
+    (listens,) = theatre.times(1, "nod")
+    assert first + VOICE_S - listens == pytest.approx(4.0, abs=2 * FRAME), "4 s before his end"
+    (ends,) = [t for t in theatre.times(1, "idle") if t > listens]
+    assert ends == pytest.approx(first + VOICE_S + 2.0, abs=4 * FRAME), "6 s of it are enough"
+    for before, after in ((first, second), (second, third), (third, fourth)):
+        assert 0.4 <= after - (before + VOICE_S) < 0.6
+    (shakes,) = theatre.times(0, "shake")
+    assert shakes >= fourth + VOICE_S - FRAME
+
+
+def show_of(folder, cues, characters='<character name="a"/><character name="b"/>'):
+    path = folder / "my.show"
+    path.write_text(f"<show>{characters}\n{cues}\n</show>")
+    return path
+
+
+def test_what_is_cut_off_fades_and_stalls_nothing(hand, tmp_path):
+    path = show_of(
+        tmp_path,
+        '<do who="a" id="x" for="20">wave</do><wait seconds="1"/><stop what="x" fade="2"/>'
+        '<say who="b" id="y">Hello there.</say><wait seconds="0.5"/><stop what="y"/>'
+        '<wait for="y"/><wait for="x"/>',
+    )
+    theatre = Theatre(hand, path)
+    weights = []
+    while not theatre.over and hand.frames < 900:
+        weights.append(theatre.frame()[0].command.action.weight)
+    assert hand.frames * FRAME == pytest.approx(3.0, abs=0.2)
+    assert weights[10] == 1.0
+    fading = [weight for weight in weights if -1.0 < weight < 1.0 and weight]
+    assert len(fading) > 50
+    assert all(a > b for a, b in pairwise(fading))
+    assert theatre.times(1, "speaks"), "the line had begun"
+
+
+def test_a_voice_that_never_answers_stalls_nothing(hand):
+    theatre = Theatre(hand, ANTIGONE, voice=False)
+    theatre.play(5 * MAX_WAIT_S + 20.0)
+    assert theatre.over
+
+
+def test_typing_hands_over_to_the_dialogue_in_mid_play(hand, tmp_path):
+    (tmp_path / "my.xml").write_text(
+        '<dialogue><unit name="u"><state name="q"><transition>'
+        '<condition type="input_match">* you *</condition><action type="say">Me.</action>'
+        "</transition></state></unit></dialogue>"
+    )
+    path = show_of(
+        tmp_path,
+        '<say who="a">A long story begins.</say><wait seconds="60"/><talk script="my.xml"/>',
+    )
+    theatre = Theatre(hand, path)
+    theatre.play(3.0)
+    (outcome, other) = theatre.frame(typed="who are you?")
+    assert outcome.reply is not None
+    assert outcome.hush
+    assert other.reply is None
+    theatre.play(30.0)
+    assert len(theatre.times(0, "reply")) == 2, "the play does not go on"
+    theatre.frame(clear=True)
+    theatre.play(1.0)
+    assert len(theatre.times(0, "reply")) == 3, "it begins again"
+
+
+def test_a_checkpoint_keeps_the_stage_that_the_cast_shares(hand):
+    theatre = Theatre(hand, ANTIGONE)
+    theatre.play(9.0)
+    copy = Checkpoint({"cast": theatre.cast}).content()["cast"]
+    assert copy[0]._stage is copy[1]._stage
+    assert copy[0]._stage is not theatre.cast[0]._stage
+    frames, events, due = hand.frames, len(theatre.events), dict(theatre._due)
+    acting = list(theatre._acting)
+    theatre.play(12.0)
+    first = theatre.events[events:]
+    hand.frames = frames
+    theatre.cast, theatre._due, theatre._acting = copy, due, acting
+    del theatre.events[events:]
+    theatre.play(12.0)
+    assert len(first) > 1
+    assert theatre.events[events:] == first
+
+
+WRONG = {
+    "no cue": ("", ":1: a show without a cue"),
+    "nobody": ('<say who="c">Hi</say>', ":2: nobody is called 'c': a, b"),
+    "no text": ('<say who="a"> </say>', ":2: <say> needs a text"),
+    "unknown cue": ("<fly/>", ":2: <fly> is no cue; there are say, do, stop, feel, wait, talk"),
+    "unknown attribute": ('<do who="a" at="3">wave</do>', ":2: <do> has no 'at'"),
+    "unknown id": ('<wait for="x"/>', ":2: no cue before it has the id 'x'"),
+    "an endless wait": ("<wait/>", ":2: a wait needs seconds="),
+    "nothing to stop": ('<stop fade="1"/>', ":2: what is stopped?"),
+    "two of one id": (
+        '<do who="a" id="x">wave</do>\n<do who="b" id="x">wave</do>',
+        ":3: a second id 'x'",
+    ),
+    "a number": ('<wait seconds="-1"/>', ":2: seconds='-1' is no number"),
+    "emotion": ('<feel who="a" emotion="envy"/>', ":2: 'envy' is none of the emotions"),
+    "a gesture without an end": (
+        '<say who="a"><begin_gesture id="g" anim="wave"/>Hi</say>',
+        "gesture 'g' never ends",
+    ),
+    "after the talk": ('<talk script="x.xml"/><wait seconds="1"/>', ":2: nothing comes after"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_play_that_cannot_be_shown_is_named_by_line(name, tmp_path):
+    cues, message = WRONG[name]
+    with pytest.raises(BadInputError, match=re.escape(message)) as refused:
+        find_scenario(str(show_of(tmp_path, cues)))
+    assert "\n" not in str(refused.value)
+
+
+def test_a_play_without_a_display_is_written(cubeling):
+    code, _, errors = cubeling("show", "antigone")
+    assert code == 2
+    assert "there is no display here: write a video" in errors
+    code, _, errors = cubeling("show", "my.mp4")
+    assert code == 2
+    assert "'my.mp4' is no play: give a .show file" in errors
