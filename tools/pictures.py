@@ -15,20 +15,17 @@ import glfw
 import numpy as np
 from rich.console import Console
 
-from cubeling.affect import LABEL_SETS
 from cubeling.app.behaving.opening import open_lines
 from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
 from cubeling.app.behaving.recording import record_behaviour
 from cubeling.app.commands.study.mood import plot
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opening import intrinsics_for, open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.bundled import bundled_session
-from cubeling.app.speaking.speaker import LiveSpeaker
 from cubeling.app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from cubeling.app.ui.calibration.coach_lines import write_coverage
 from cubeling.app.ui.calibration.session import Advice, CalibrationSession, Picture
@@ -54,7 +51,6 @@ from cubeling.characters import Character
 from cubeling.characters.model.motion_library import library_of
 from cubeling.characters.rendering import create_context
 from cubeling.characters.rendering.portrait import PortraitRenderer
-from cubeling.characters.speech import DEFAULT_PROFILE, espeak
 from cubeling.characters.synthesis.graphs.building import analyse
 from cubeling.tracking import CubeModel, open_source, write_sheet
 from cubeling.tracking.calibration import CubeFinder
@@ -62,6 +58,7 @@ from cubeling.tracking.synthetic import open_synthetic
 from tools.gesture_sheets import draw_library, draw_settings
 from tools.gesture_tour import draw_tour
 from tools.offscreen import no_display_needed
+from tools.talk_pictures import draw_play, draw_talk
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 
@@ -153,50 +150,6 @@ def save_tile(scenario: str, step: Step) -> None:
     small = cv2.resize(part, TILE_SIZE, interpolation=cv2.INTER_AREA)
     cv2.imwrite(str(path), small, (cv2.IMWRITE_JPEG_QUALITY, 88))
     Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
-
-
-TALK = {5.8: "Do you know a dinosaur with horns?"}
-"""What is typed in the picture of a talk, by the time [s]."""
-
-TALK_MOMENT_S, TALK_TYPED = 8.2, "And what about eggs"
-"""When it is taken [s], and what is in the field then."""
-
-
-def draw_talk() -> None:
-    """Let Vleo talk at the drawn desk, and save a moment of it."""
-    asked = sorted(TALK.items())
-    with ExitStack() as closing:
-        source = closing.enter_context(open_source("synthetic:talk"))
-        context = create_context()
-        closing.callback(context.release)
-        intrinsics = intrinsics_for(source.intrinsics, source.size)
-        playground = Playground("talk", intrinsics, context=context)
-        closing.callback(playground.close)
-        virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
-        closing.callback(virtual_robot.close)
-        speaker = LiveSpeaker(espeak(), lambda *_: None, ("en",), DEFAULT_PROFILE, waits=True)
-        closing.callback(speaker.close)
-        layout, layer = CardLayout(ROOM_BELOW), PlaybackLayer(("talk",), Path(), {}, lambda: None)
-        layer.report(SessionStatus("talk", listens=True))
-        for frame in source:
-            now = frame.timestamp
-            typed = asked.pop(0)[1] if asked and now >= asked[0][0] else ""
-            inputs = Inputs(typed=typed).with_lines(speaker.lines(now))
-            step = playground.step(frame, inputs, drawn=now > TALK_MOMENT_S - TILE_SETTLING_S)
-            speaker.hear(step)
-            if now >= TALK_MOMENT_S:
-                break
-        save_tile("talk", step)
-        assert step.picture is not None
-        emotion = step.emotion.emotion
-        label = LABEL_SETS["thesis"].next("neutral", emotion, 0.05)  # a robot has three words
-        view = RobotView("ready", emotion.valence, label)
-        picture = overlay(step.picture, step, view, virtual_robot, layout)
-    for character in TALK_TYPED:
-        layer.type(character)
-    for card in layer.cards(source.size):
-        card.blend_over(picture)
-    cv2.imwrite(str(FOLDER / "talk.jpg"), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
 
 
 def in_window(picture: Picture, scenario: str, now: float, length: float) -> Picture:
@@ -419,4 +372,5 @@ if __name__ == "__main__":
     draw_gestures()
     draw_gesture_editor()
     draw_behaviour()
-    draw_talk()
+    save_tile("talk", draw_talk(FOLDER))
+    draw_play(FOLDER)

@@ -46,7 +46,7 @@ class ShowScenario:
     """
 
     script: ClassVar[ShowScript]
-    """The play."""
+    """What its file says."""
 
     asked: ClassVar[Mapping[str, str]]
     """See `AskingScenario`."""

@@ -35,7 +35,7 @@ LIMITS = XmlLimits(bytes=1 << 20, elements=20_000, depth=4)
 SHOW_FILE = FileKind(
     "show", (".show",), AppError, LIMITS.bytes, "cubeling.app.show.script:read_show"
 )
-"""A play."""
+"""The cues of several characters."""
 
 MAX_SECONDS = 3600.0
 """Longest time that a cue may name [s]."""
@@ -46,7 +46,7 @@ USUAL_ACTING_S = 3.0
 
 @dataclass(frozen=True)
 class ShowCharacter:
-    """Who plays."""
+    """One of the cast, as the file names it."""
 
     name: str
     """Its name in the file."""
@@ -83,7 +83,7 @@ class Cue:
 
 @dataclass(frozen=True)
 class ShowScript:
-    """A play."""
+    """The content of a file: characters, and cues in their order."""
 
     name: str
     """The file, for messages."""

@@ -1,6 +1,7 @@
 """Where a play is: which cue comes next, and what goes on."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from cubeling.app.show.script import Cue, ShowScript
@@ -14,7 +15,7 @@ class Ongoing:
     """Something that a character does since its cue."""
 
     cue: Cue
-    """The cue."""
+    """What began it."""
 
     since: float
     """When its turn came [s]."""
@@ -37,7 +38,7 @@ class StageState:
     """What all of the cast share: plain values, which a checkpoint copies."""
 
     script: ShowScript
-    """The play."""
+    """What its file says."""
 
     next: int = 0
     """The cue that comes next."""
@@ -120,7 +121,7 @@ class StageState:
         self.talks = True
 
 
-HANDLERS = {
+HANDLERS: dict[str, Callable[[StageState, Cue, float], None]] = {
     "say": StageState.begin,
     "do": StageState.begin,
     "stop": StageState.stop,

@@ -68,7 +68,7 @@ def _draw(text: str, is_open: bool, room: float, scale: float) -> Canvas:
         while text_width(shown, TEXT_SIZE) > room - 60:  # its end is what is being typed
             shown = shown[1:]
         canvas.text(24, 32, shown, TEXT_SIZE, INK)
-        end = 30 + text_width(shown, TEXT_SIZE)
+        end = 33 + text_width(shown, TEXT_SIZE)
         canvas.line([[end, 13], [end, 35]], INK, 2)
     else:
         words = EMPTY_WORDS if is_open else CLOSED_WORDS

@@ -11,6 +11,7 @@ from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.scenario import OVER_EVENT, Inputs, ScenarioSettings
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios import find_scenario
+from cubeling.app.show.scenario import show_scenario
 from cubeling.app.show.stage_state import MAX_WAIT_S
 from cubeling.app.speaking.line_chooser import LineRequest
 from cubeling.app.speaking.speaker import soundless_line
@@ -31,7 +32,7 @@ class Theatre:
 
     def __init__(self, hand, path, *, voice=True):
         self.hand, self.voice = hand, voice
-        lead = find_scenario(str(path))(CUBE, ScenarioSettings())
+        lead = show_scenario(path)(CUBE, ScenarioSettings())
         others = range(1, len(lead.script.cast))
         self.cast = [lead, *(lead.scenario_of(number, RootDelta()) for number in others)]
         self.events = []  # (time, who, what)
