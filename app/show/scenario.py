@@ -19,7 +19,7 @@ from cubeling.app.scenarios.follow import PLAYER_POSITION
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.rules.scenario import HOME
-from cubeling.app.show.script import Cue, ShowScript, read_show
+from cubeling.app.show.script import ShowCue, ShowScript, read_show
 from cubeling.app.show.stage_state import StageState
 from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent, RootDelta
 from cubeling.characters.speech import TaggedText
@@ -82,7 +82,7 @@ class ShowScenario:
         self._stage = stage or StageState(self.script)
         self._presence = Presence()
         self._mood = MoodController(Personality.load(self.personality))
-        self._saying: Cue | None = None
+        self._saying: ShowCue | None = None
         self._talk: DialogueScenario | None = None
 
     def scenario_of(self, number: int, place: RootDelta) -> Scenario | None:

@@ -56,7 +56,7 @@ class ShowCharacter:
 
 
 @dataclass(frozen=True)
-class Cue:
+class ShowCue:
     """Something that is carried out when its turn comes."""
 
     kind: str
@@ -97,7 +97,7 @@ class ShowScript:
     cast: tuple[ShowCharacter, ...]
     """Who plays: the first one is led by the cube where there is one."""
 
-    cues: tuple[Cue, ...]
+    cues: tuple[ShowCue, ...]
     """What happens, in this order."""
 
     @property
@@ -162,7 +162,7 @@ class _Reader:
         path = str(self._folder / body) if Path(body).suffix else body
         self._cast[name] = ShowCharacter(name, path)
 
-    def _cue(self, element: XmlElement) -> Cue:
+    def _cue(self, element: XmlElement) -> ShowCue:
         tag = element.tag
         self._expect(element, tag, CUES[tag])
         if not self._cast:
@@ -180,7 +180,7 @@ class _Reader:
         value = self._seconds(element, "value" if tag == "feel" else "", 1.0, 1.0)
         if tag == "wait" and not text and not seconds:
             raise self._error(element, 'a wait needs seconds="2", or for="ID" before="0.5"')
-        return Cue(tag, element.line, who, name, text, seconds, value)
+        return ShowCue(tag, element.line, who, name, text, seconds, value)
 
     def _text(self, element: XmlElement) -> str:
         """Return what a cue is about."""

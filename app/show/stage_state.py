@@ -4,18 +4,18 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from cubeling.app.show.script import Cue, ShowScript
+from cubeling.app.show.script import ShowCue, ShowScript
 
 MAX_WAIT_S = 6.0
 """A voice that has not answered after so long does not answer any more [s]."""
 
 
 @dataclass
-class Ongoing:
+class OngoingCue:
     """Something that a character does since its cue."""
 
-    cue: Cue
-    """What began it."""
+    cue: ShowCue
+    """The cue by which it was begun."""
 
     since: float
     """When its turn came [s]."""
@@ -46,10 +46,10 @@ class StageState:
     since: float | None = None
     """When the last cue was carried out [s]; None before the beginning."""
 
-    ongoing: dict[int, Ongoing] = field(default_factory=dict)
+    ongoing: dict[int, OngoingCue] = field(default_factory=dict)
     """What was begun, by the number of its cue."""
 
-    orders: dict[int, list[Cue]] = field(default_factory=dict)
+    orders: dict[int, list[ShowCue]] = field(default_factory=dict)
     """Cues that their characters have not seen yet, by the number in the cast."""
 
     talks: bool = False
@@ -67,24 +67,24 @@ class StageState:
             HANDLERS[cue.kind](self, cue, now)
             self.next, self.since = self.next + 1, now
 
-    def _is_due(self, cue: Cue, now: float) -> bool:
+    def _is_due(self, cue: ShowCue, now: float) -> bool:
         if cue.kind != "wait":
             return True
         if not cue.text:
             return self.since is not None and now - self.since >= cue.seconds
         return now >= self.named(cue.text).end - cue.seconds
 
-    def named(self, name: str) -> Ongoing:
+    def named(self, name: str) -> OngoingCue:
         """Return what was begun by the cue of an id."""
         return next(each for each in self.ongoing.values() if each.cue.id == name)
 
-    def begin(self, cue: Cue, now: float) -> None:
+    def begin(self, cue: ShowCue, now: float) -> None:
         """Begin something; when it is over is not known of what is said."""
         end = math.inf if cue.kind == "say" else now + cue.seconds
-        self.ongoing[self.next] = Ongoing(cue, now, end)
+        self.ongoing[self.next] = OngoingCue(cue, now, end)
         self.orders.setdefault(cue.who, []).append(cue)
 
-    def stop(self, cue: Cue, now: float) -> None:
+    def stop(self, cue: ShowCue, now: float) -> None:
         """Cut something off, with a fade."""
         stopped = self.named(cue.text)
         if now < stopped.end:
@@ -92,21 +92,21 @@ class StageState:
             stopped.fades_s = stopped.end - now
             self.orders.setdefault(stopped.cue.who, []).append(cue)
 
-    def order(self, cue: Cue, now: float) -> None:
+    def order(self, cue: ShowCue, now: float) -> None:
         """Tell a character of a cue that takes no time."""
         self.orders.setdefault(cue.who, []).append(cue)
 
-    def take_orders(self, who: int) -> list[Cue]:
+    def take_orders(self, who: int) -> list[ShowCue]:
         """Return the cues that a character has not seen yet."""
         return self.orders.pop(who, [])
 
-    def spoken(self, cue: Cue, end: float) -> None:
+    def spoken(self, cue: ShowCue, end: float) -> None:
         """Note when the line of a cue is over [s]."""
         for each in self.ongoing.values():
             if each.cue is cue and each.end == math.inf:
                 each.end = end
 
-    def acting(self, who: int, now: float) -> Ongoing | None:
+    def acting(self, who: int, now: float) -> OngoingCue | None:
         """Return the action of a character that began last and goes on."""
         own = [e for e in self.ongoing.values() if e.cue.who == who and e.cue.kind == "do"]
         return next((each for each in reversed(own) if now < each.end), None)
@@ -121,7 +121,7 @@ class StageState:
         self.talks = True
 
 
-HANDLERS: dict[str, Callable[[StageState, Cue, float], None]] = {
+HANDLERS: dict[str, Callable[[StageState, ShowCue, float], None]] = {
     "say": StageState.begin,
     "do": StageState.begin,
     "stop": StageState.stop,
