@@ -1,15 +1,20 @@
 """Plays: the order and the overlap of their cues, with a voice that is made up."""
 
+import math
 import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
+from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.scenario import OVER_EVENT, Inputs, ScenarioSettings
-from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.pipeline.table.attention import Attention
+from cubeling.app.pipeline.table.situation import SeenCube, Situation
 from cubeling.app.scenarios import find_scenario
 from cubeling.app.show.scenario import show_scenario
 from cubeling.app.show.stage_state import MAX_WAIT_S
@@ -17,8 +22,11 @@ from cubeling.app.speaking.line_chooser import LineRequest
 from cubeling.app.speaking.speaker import soundless_line
 from cubeling.bad_input import BadInputError
 from cubeling.characters import RootDelta
+from cubeling.characters.skeleton import rotations
 from cubeling.characters.speech import DEFAULT_PROFILE, Manner
-from cubeling.tracking import CubeModel
+from cubeling.tracking import CubeModel, CubeState
+from tests.app.conftest import Hand
+from tests.bundled_characters import bundled_character
 
 CUBE = CubeModel.load("companion")
 ANTIGONE = Path("app/show/antigone.show")
@@ -34,7 +42,7 @@ class Theatre:
         self.hand, self.voice = hand, voice
         lead = show_scenario(path)(CUBE, ScenarioSettings())
         others = range(1, len(lead.script.cast))
-        self.cast = [lead, *(lead.scenario_of(number, RootDelta()) for number in others)]
+        self.cast: list[Any] = [lead, *(lead.scenario_of(at, RootDelta()) for at in others)]
         self.events = []  # (time, who, what)
         self._due = {}
         self._acting = [""] * len(self.cast)
@@ -204,3 +212,54 @@ def test_a_play_without_a_display_is_written(cubeling):
     code, _, errors = cubeling("show", "my.mp4")
     assert code == 2
     assert "'my.mp4' is no play: give a .show file" in errors
+
+
+def speeds(folder, typed_at, seconds=7.0):
+    """Return how fast the quickest joint turns from frame to frame [rad/s].
+
+    A person tells a story with a gesture, and answers what is typed at a time with another one.
+    """
+    hand = Hand()
+    scenario = show_scenario(folder / "my.show")(CUBE, ScenarioSettings())
+    member = CastMember("a", bundled_character("human"), scenario, Attention("camera", 0.06))
+    away = np.eye(4)
+    away[2, 3] = 0.5
+    turned, due = [], {}
+    for number in range(round(seconds / FRAME)):
+        controls = hand.frame()
+        state = CubeState(
+            True, away, np.zeros(6), np.eye(6), "markers", (), 0.1, controls.timestamp
+        )
+        seen = SeenCube(state, controls)
+        typed = "who are you" if 0.0 <= number * FRAME - typed_at < FRAME else ""
+        told = Inputs(line=due.pop(number, None), typed=typed)
+        outcome = member.decide(seen, told)
+        if outcome.reply is not None:
+            request = LineRequest(outcome.reply.text, "en", Manner())
+            due = {number + 2: soundless_line(request, DEFAULT_PROFILE)}
+        member.perform(member.command(seen, outcome, told, (), None))
+        turned.append(member.posed.pose.rotations)
+    one, other = np.array(turned[:-1]), np.array(turned[1:])
+    turns = rotations.to_rotation_vector(rotations.multiply(rotations.conjugate(one), other))
+    return np.linalg.norm(turns, axis=-1).max(axis=1) / FRAME
+
+
+@pytest.mark.slow(reason="a person is animated for fourteen seconds")
+def test_the_dialogue_takes_over_in_mid_gesture_without_a_jump(tmp_path):
+    show_of(
+        tmp_path,
+        '<say who="a"><begin_gesture id="g" anim="wave_big"/>A long and winding story begins'
+        '<end_gesture id="g"/> here, my friends.</say><wait seconds="60"/><talk script="my.xml"/>',
+        '<character name="a" body="human"/>',
+    )
+    (tmp_path / "my.xml").write_text(
+        '<dialogue><unit name="u"><state name="q"><transition>'
+        '<condition type="input_match">* you *</condition><action type="say">'
+        '<begin_gesture id="g" anim="clap"/>Me? I am only a person,<end_gesture id="g"/> who '
+        "tells stories.</action></transition></state></unit></dialogue>"
+    )
+    alone, taken = speeds(tmp_path, math.inf), speeds(tmp_path, 1.5)
+    switch = round(1.5 / FRAME)
+    near, later = taken[switch - 1 : switch + 20], taken[switch + 20 :]
+    assert near.max() > 0.5, "something moves"
+    assert near.max() <= 1.2 * max(alone.max(), later.max())
