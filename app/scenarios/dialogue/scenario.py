@@ -102,20 +102,23 @@ class DialogueScenario:
         hush = inputs.hush or bool(inputs.typed) or "the cube was lifted" in words
         hush |= inputs.line is not None and not self._reply.begin(inputs.line, now)
         hush |= not visible
-        heard = self._reply.stop(now) if hush else self._reply.finished(now)
-        if heard:
-            self._dialogue.remember_said(heard)
+        self._remember(self._reply.stop(now) if hush else self._reply.finished(now))
         self._listen(inputs, words, now)
         turn = self._answer(Moment(controls, situation, inputs, self._roles)) if visible else None
         reply = None
         if turn is not None and turn.text:
-            self._dialogue.remember_said(self._reply.stop(now) or heard)
+            self._remember(self._reply.stop(now))
             self._reply.ask(now)
             reply, hush = Reply(turn.text, turn.language), True
         influences = () if turn is None else turn.influences
         return self._outcome(
             Moment(controls, situation, inputs, self._roles), influences, visible, reply, hush
         )
+
+    def _remember(self, heard: str) -> None:
+        """Let the dialogue remember what was heard of a reply, if anything was."""
+        if heard:
+            self._dialogue.remember_said(heard)
 
     def _listen(self, inputs: Inputs, words: tuple[str, ...], now: float) -> None:
         """Take what is typed and what the cube does."""

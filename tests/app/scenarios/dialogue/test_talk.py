@@ -124,6 +124,14 @@ def test_it_remembers_what_was_heard_and_not_what_was_planned(talk):
     assert talk.profile["said"] == TaggedText.read(talk.replies[-1]).text, "all of it was heard"
 
 
+def test_it_still_knows_what_it_said_while_it_thinks(talk):
+    talk.wait(8.0)
+    before = talk.profile["said"]
+    assert before
+    talk.say("tell me about eggs")
+    assert talk.profile["said"] == before, "nothing of the reply was heard yet"
+
+
 def test_a_reply_takes_the_place_of_one_that_was_not_begun(talk):
     talk.wait(8.0)
     first = talk.say("tell me about the triceratops")
