@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs, Reply
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
@@ -19,6 +20,7 @@ from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.typed_lines import TypedLines
 from cubeling.app.session import SessionOptions
+from cubeling.app.session.encoding import encode
 from cubeling.app.speaking import voices
 from cubeling.app.ui.screen import NullScreen
 from cubeling.characters.speech import Manner, VoiceError
@@ -31,6 +33,7 @@ from tests.app.speaking.test_speaker import BUZZ
 
 USUAL = Manner()
 RATE = 30
+SOURCE = f"talk?rate={RATE}&size=320x180&frames={13 * RATE}"
 CUT_S = 5.6
 """When the player interrupts [s]."""
 
@@ -59,7 +62,7 @@ class Player(NullScreen):
 @pytest.fixture(scope="module")
 def talked(tmp_path_factory):
     """A talk of thirteen seconds with a voice that buzzes: its steps, and its recording."""
-    source = open_synthetic(f"talk?rate={RATE}&size=320x180&frames={13 * RATE}")
+    source = open_synthetic(SOURCE)
     path = tmp_path_factory.mktemp("talk") / "talk.mcap"
 
     def track(_, frame, markers):
@@ -172,6 +175,32 @@ def test_a_talk_replays_byte_for_byte_without_a_voice(talked, monkeypatch):
     assert result.identical, dict(result.different)
     recorded = [each.asked for each in session_parts.inputs(path).values()]
     assert [each for each in recorded if each != Inputs()] == list(ASKED.values())
+
+
+@pytest.mark.slow(reason="a part of the session is processed twice")
+def test_a_talk_goes_on_from_a_checkpoint_in_mid_sentence(talked, monkeypatch):
+    steps, path, track = talked
+    monkeypatch.setattr(TrackedCube, "track", track)
+    asked, lines = session_parts.inputs(path), session_parts.lines(path)
+    source = open_synthetic(SOURCE)
+    playground = Playground("talk", source.intrinsics)
+
+    def play(first, last):
+        messages = []
+        for step in steps[first:last]:
+            now = step.frame.timestamp
+            inputs = asked[now].asked if now in asked else Inputs()
+            made = playground.step(step.frame, replace(inputs, line=lines.get(now)))
+            messages.append([encode(message) for message in made.messages().values()])
+        return messages
+
+    at = round((CUT_S - 0.5) * RATE)
+    play(0, at)
+    assert playground.cast.lead.speaking.line is not None
+    saved = playground.checkpoint()
+    after = play(at, at + 2 * RATE)
+    playground.restore(saved)
+    assert play(at, at + 2 * RATE) == after
 
 
 def test_typed_lines_wait_for_the_end_of_a_reply_and_end_the_session(talked):
