@@ -25,13 +25,16 @@ from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent
 from cubeling.characters.speech import TaggedText
 from cubeling.tracking import CubeControls, CubeModel
 
+BACK_S = 10.0
+"""When nobody has said anything for so long, the play goes on that a player had interrupted [s]."""
+
 
 class ShowScenario:
     """Plays one of the cast by the file of its class, which `show_scenario` makes.
 
     Of the first one it makes those of the others (`CastDirector`). Where the file ends with a
-    dialogue, that takes over with its cue, or as soon as the player types: the first character
-    answers from where it is.
+    dialogue, that takes over with its cue, or for a while as soon as the player types: the first
+    character answers from where it is.
 
     Parameters
     ----------
@@ -84,6 +87,7 @@ class ShowScenario:
         self._mood = MoodController(Personality.load(self.personality))
         self._saying: ShowCue | None = None
         self._talk: DialogueScenario | None = None
+        self._talked_at = 0.0
 
     def scenario_of(self, number: int, place: RootDelta) -> Scenario | None:
         """Return what one of the others plays; see `CastDirector`."""
@@ -99,12 +103,17 @@ class ShowScenario:
             if inputs.clear:
                 self._begin_again()
             if inputs.typed and self.dialogue is not None:
-                stage.take_over()
+                stage.take_over(comes_back=True)
             if visible:
                 stage.advance(now)
         if stage.talks and self._who == 0 and self.dialogue is not None:
             self._talk = self._talk or self.dialogue(self._cube, self._settings)
-            return self._talk.update(controls, situation, inputs)
+            outcome = self._talk.update(controls, situation, inputs)
+            if inputs.typed or inputs.hush or outcome.reply is not None or outcome.icon == "talk":
+                self._talked_at = now
+            if stage.comes_back and now - self._talked_at > BACK_S:
+                stage.come_back(now)
+            return outcome
         if self._saying is not None and inputs.line is not None:
             stage.spoken(self._saying, now + inputs.line.utterance.duration)
         return self._carry_out(controls, inputs, visible)

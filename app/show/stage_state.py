@@ -55,6 +55,9 @@ class StageState:
     talks: bool = False
     """Whether the dialogue has taken over."""
 
+    comes_back: bool = False
+    """Whether the play goes on after it."""
+
     def advance(self, now: float) -> None:
         """Carry out all cues whose turn has come at a time [s]."""
         cues = self.script.cues
@@ -116,9 +119,16 @@ class StageState:
         done = self.next == len(self.script.cues) and not self.talks
         return done and all(now >= each.end for each in self.ongoing.values())
 
-    def take_over(self) -> None:
-        """Let the dialogue go on from here."""
-        self.talks = True
+    def take_over(self, *, comes_back: bool = False) -> None:
+        """Let the dialogue go on from here, for good or until `come_back`."""
+        if not self.talks:
+            self.talks, self.comes_back = True, comes_back
+
+    def come_back(self, now: float) -> None:
+        """Go on with the play at a time [s], with the cue that comes next."""
+        self.talks, self.since = False, now
+        for each in self.ongoing.values():
+            each.end = min(each.end, now)
 
 
 HANDLERS: dict[str, Callable[[StageState, ShowCue, float], None]] = {

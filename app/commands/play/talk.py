@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -153,7 +153,18 @@ def read_typed(path: Path) -> list[str]:
 
 
 def _lines(typed: Path | None) -> Iterable[str]:
-    return sys.stdin if typed is None else read_typed(typed)
+    if typed is not None:
+        return read_typed(typed)
+    return _asked_lines() if sys.stdin.isatty() else sys.stdin
+
+
+def _asked_lines() -> Iterator[str]:
+    """Yield the lines that are typed after a prompt, until their end (Ctrl-D)."""
+    while True:
+        try:
+            yield input("> ")
+        except EOFError:
+            return
 
 
 def opened_camera(closing: ExitStack) -> FrameSource | None:

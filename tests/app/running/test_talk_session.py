@@ -183,6 +183,7 @@ def test_a_talk_goes_on_from_a_checkpoint_in_mid_sentence(talked, monkeypatch):
     monkeypatch.setattr(TrackedCube, "track", track)
     asked, lines = session_parts.inputs(path), session_parts.lines(path)
     source = open_synthetic(SOURCE)
+    assert source.intrinsics is not None
     playground = Playground("talk", source.intrinsics)
 
     def play(first, last):

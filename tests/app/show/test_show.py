@@ -15,8 +15,9 @@ from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.scenario import OVER_EVENT, Inputs, ScenarioSettings
 from cubeling.app.pipeline.table.attention import Attention
 from cubeling.app.pipeline.table.situation import SeenCube, Situation
+from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.scenarios import find_scenario
-from cubeling.app.show.scenario import show_scenario
+from cubeling.app.show.scenario import BACK_S, show_scenario
 from cubeling.app.show.stage_state import MAX_WAIT_S
 from cubeling.app.speaking.line_chooser import LineRequest
 from cubeling.app.speaking.speaker import soundless_line
@@ -149,11 +150,36 @@ def test_typing_hands_over_to_the_dialogue_in_mid_play(hand, tmp_path):
     assert outcome.reply is not None
     assert outcome.hush
     assert other.reply is None
-    theatre.play(30.0)
-    assert len(theatre.times(0, "reply")) == 2, "the play does not go on"
+    theatre.play(9.0)
+    assert len(theatre.times(0, "reply")) == 2
     theatre.frame(clear=True)
     theatre.play(1.0)
     assert len(theatre.times(0, "reply")) == 3, "it begins again"
+
+
+def test_the_play_goes_on_after_a_talk(hand, tmp_path):
+    (tmp_path / "my.xml").write_text(
+        '<dialogue><unit name="u"><state name="q"><transition>'
+        '<condition type="input_match">* you *</condition><action type="say">Me.</action>'
+        "</transition></state></unit></dialogue>"
+    )
+    path = show_of(
+        tmp_path,
+        '<say who="a" id="x">A story begins.</say><wait for="x"/><say who="b" id="y">It ends.</say>'
+        '<wait for="y"/><talk script="my.xml"/>',
+    )
+    theatre = Theatre(hand, path)
+    theatre.play(2.0)
+    theatre.frame(typed="who are you?")
+    theatre.play(5.0)
+    assert not theatre.times(1, "reply"), "the play waits"
+    theatre.play(VOICE_S + BACK_S)
+    (ends,) = theatre.times(1, "reply")
+    assert ends == pytest.approx(2.0 + VOICE_S + BACK_S, abs=0.5)
+    theatre.play(VOICE_S + 1.0)
+    theatre.frame(typed="and you?")
+    theatre.play(40.0)
+    assert len(theatre.times(1, "reply")) == 1, "the dialogue has come with its cue, and stays"
 
 
 def test_a_checkpoint_keeps_the_stage_that_the_cast_shares(hand):
@@ -224,7 +250,8 @@ def speeds(folder, typed_at, seconds=7.0):
     member = CastMember("a", bundled_character("human"), scenario, Attention("camera", 0.06))
     away = np.eye(4)
     away[2, 3] = 0.5
-    turned, due = [], {}
+    turned: list[Any] = []
+    due: dict[int, SpokenLine] = {}
     for number in range(round(seconds / FRAME)):
         controls = hand.frame()
         state = CubeState(
@@ -238,6 +265,7 @@ def speeds(folder, typed_at, seconds=7.0):
             request = LineRequest(outcome.reply.text, "en", Manner())
             due = {number + 2: soundless_line(request, DEFAULT_PROFILE)}
         member.perform(member.command(seen, outcome, told, (), None))
+        assert member.posed is not None
         turned.append(member.posed.pose.rotations)
     one, other = np.array(turned[:-1]), np.array(turned[1:])
     turns = rotations.to_rotation_vector(rotations.multiply(rotations.conjugate(one), other))
