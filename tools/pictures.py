@@ -43,6 +43,8 @@ from cubeling.app.workshop.motion_graphs.timeline import save_timeline
 from cubeling.app.workshop.motion_graphs.transition import find_transitions
 from cubeling.app.workshop.pages.box_plot import box_plot
 from cubeling.app.workshop.pages.page import STYLE
+from cubeling.app.workshop.study.bundled.single_facial_actions import INTENSITY
+from cubeling.app.workshop.study.face_stimuli import RECIPES as ACTIONS, draw_faces
 from cubeling.app.workshop.study.participants.running import run_simulated
 from cubeling.app.workshop.study.participants.study_log import StudyFolder
 from cubeling.app.workshop.study.protocols.protocol_file import protocol_text, read_protocol
@@ -273,6 +275,39 @@ def draw_study() -> None:
     (FOLDER / "study-times.svg").write_text(f"{head}{drawn}</svg>\n", "utf-8")
 
 
+FACE_ROWS = (("high", "with"), ("high", "without"), ("low", "with"))
+"""Intensity and wrinkles of each row of faces."""
+
+FACE_FILE = "{}-woman-{}-{}-picture.png"
+
+FACE_PX = 160
+"""Side of a face in the picture of all [px]."""
+
+
+def draw_faces_of_study() -> None:
+    """Draw the pictures of the experiment with facial actions that are analysed."""
+    with tempfile.TemporaryDirectory() as folder:
+        shown = [action for action in ACTIONS if action in INTENSITY]
+        draw_faces(
+            {"woman": "human", "man": "human"},
+            Path(folder),
+            lambda stimulus: stimulus["mode"] == "picture" and stimulus["agent"] == "woman",
+        )
+        rows = [
+            [
+                cv2.resize(
+                    np.asarray(cv2.imread(str(Path(folder) / FACE_FILE.format(action, *row)))),
+                    (FACE_PX, FACE_PX),
+                    interpolation=cv2.INTER_AREA,
+                )
+                for action in shown
+            ]
+            for row in FACE_ROWS
+        ]
+    picture = np.vstack([np.hstack(row) for row in rows])
+    cv2.imwrite(str(FOLDER / "study-faces.jpg"), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
+
+
 def draw_moods() -> None:
     """Plot a session with three personalities, and one whose robot was unplugged."""
     compared = FOLDER / "mood-personalities.svg"
@@ -368,6 +403,7 @@ if __name__ == "__main__":
     draw_pattern_of_latency()
     draw_moods()
     draw_study()
+    draw_faces_of_study()
     draw_transition()
     draw_gestures()
     draw_gesture_editor()

@@ -6,12 +6,14 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.progress import Progress
 from rich.text import Text
 
 from cubeling.app.command_group import CommandGroup
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
-from cubeling.app.output_path import check_output
+from cubeling.app.input_path import check_character
+from cubeling.app.output_path import check_output, check_output_folder, output_folder
 from cubeling.files import write_whole
 
 app = CommandGroup("Run a study: orders, tasks, questionnaires, simulated participants, a report.")
@@ -144,6 +146,36 @@ def report(
     """
     _needs_scipy()
     _report(folder, Console(highlight=False, soft_wrap=True))
+
+
+@app.command()
+def faces(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the stimuli.")],
+    woman: Annotated[
+        str, typer.Option(help="Who is the woman: a bundled character or a file.")
+    ] = "human",
+    man: Annotated[str, typer.Option(help="Who is the man.")] = "human",
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Overwrite stimuli.")] = False,
+) -> None:
+    """Draw the 128 pictures and animations of the protocol single-facial-actions.
+
+    One human is bundled: for two faces, name two characters with morphs for brows, cheeks and
+    mouth (ARKit's or VRM's names). The file manifest.csv says what each file shows.
+
+    Example: cubeling study faces -o faces --woman her.vrm --man him.vrm
+    """
+    check_output_folder(output, ["manifest.csv"], "stimuli", overwrite=overwrite)
+    for name in (woman, man):
+        check_character(name)
+    from cubeling.app.workshop.study.face_stimuli import draw_faces
+
+    console = Console(highlight=False, soft_wrap=True)
+    with output_folder(output), Progress(console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("Drawing", total=128)
+        count = draw_faces(
+            {"woman": woman, "man": man}, output, drawn=lambda: progress.advance(task)
+        )
+    console.print(Text.assemble((str(output), "bold"), f": {count} stimuli and manifest.csv"))
 
 
 def _needs_scipy() -> None:
