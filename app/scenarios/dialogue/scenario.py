@@ -161,7 +161,9 @@ class DialogueScenario:
         goes = acts and bool(intent.go)
         command = CharacterCommand(
             timestamp=now,
-            locomotion=way_of(intent, moment) if acts else LocomotionIntent(facing=PLAYER_POSITION),
+            locomotion=way_of(intent, moment, self.start)
+            if acts
+            else LocomotionIntent(facing=PLAYER_POSITION),
             action=None if goes else ActionIntent(action, 1.0 if acts else 0.0),
             visible=visible,
         )
