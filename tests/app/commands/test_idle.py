@@ -63,9 +63,9 @@ def test_a_person_comes_back_from_her_file(anna: Path) -> None:
 
 
 def test_the_emotions_at_both_ends_come_back_from_her_file(anna: Path, tmp_path: Path) -> None:
-    *body, (recording,) = load_person(anna)
+    skeleton, anatomy, (recording,) = load_person(anna)
     turning = replace(recording, feeling=region_of("sad"), before=region_of("happy"))
-    save_person((*body, (turning, recording)), tmp_path / "turning.idle")
+    save_person((skeleton, anatomy, (turning, recording)), tmp_path / "turning.idle")
     one, other = load_person(tmp_path / "turning.idle")[2]
     assert (one.before, one.feeling) == (turning.before, turning.feeling)
     assert (other.before, other.feeling) == (None, None)

@@ -279,7 +279,9 @@ def dialogue(tmp_path):
     path.write_text(DIALOGUE)
     lead = rules_scenario(str(path))(CubeModel.load("companion"), ScenarioSettings())
     places = RootDelta(0.2, 0.0), RootDelta(0.1, -0.2)
-    cast = [lead, *(lead.scenario_of(at, place) for at, place in enumerate(places, start=1))]
+    others = [lead.scenario_of(at, place) for at, place in enumerate(places, start=1)]
+    cast = [each for each in (lead, *others) if each is not None]
+    assert len(cast) == 3
 
     def update(controls, heard=None):
         seen = Situation(heard=heard)
