@@ -121,7 +121,7 @@ class OpenedSession:
         """Whether what a player types now is said to the character."""
         scenario = self.playground.scenario
         listens = isinstance(scenario, ListeningScenario) and scenario.listens
-        return self.replayed is None and listens
+        return listens and not is_replay(self.replayed, self.options)
 
     def keep_lens(self) -> Path | None:
         """Keep the lens of a live camera if play has measured it; return its file, if any."""
@@ -287,6 +287,11 @@ class OpenedSession:
         self.end_recording()
         if self.source is not self.first_source:
             self.source.close()
+
+
+def is_replay(session: SessionFile | None, options: SessionOptions) -> bool:
+    """Return whether a session is played again as it was, and not only its frames."""
+    return session is not None and session.info.options.scenario == options.scenario
 
 
 def settings_of(options: SessionOptions) -> ScenarioSettings:

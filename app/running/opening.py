@@ -16,7 +16,7 @@ from cubeling.app.pipeline.scenario import CastScenario, ListeningScenario, Nami
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.kept_lens import LensStore
-from cubeling.app.running.opened_session import OpenedSession, scenario_of, settings_of
+from cubeling.app.running.opened_session import OpenedSession, is_replay, scenario_of, settings_of
 from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.typed_lines import TypedLines
@@ -179,8 +179,10 @@ def open_session(
         second_wire = WireTap(f"/robots/{options.robot_names[1]}/wire")
         pace = _pace(options, source, player)
         stepped = pace is None and not source.live
-        lines = None if replayed is None else replayed.lines
         replies = isinstance(scenario, ListeningScenario)
+        # What another scenario said is no reply.
+        said = is_replay(replayed, options) or not replies
+        lines = replayed.lines if replayed is not None and said else None
         cast = (character, *others)
         speaker = open_speaker(options, cast, lines, waits=stepped, replies=replies)
         closing.callback(speaker.close)

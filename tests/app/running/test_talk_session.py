@@ -22,8 +22,10 @@ from cubeling.app.running.typed_lines import TypedLines
 from cubeling.app.session import SessionOptions
 from cubeling.app.session.encoding import encode
 from cubeling.app.speaking import voices
+from cubeling.app.speaking.recorded import RecordedSpeaker
+from cubeling.app.speaking.speaker import LiveSpeaker
 from cubeling.app.ui.screen import NullScreen
-from cubeling.characters.speech import Manner, VoiceError
+from cubeling.characters.speech import DEFAULT_PROFILE, Manner, Speech, VoiceError
 from cubeling.characters.speech.voices import Voice
 from cubeling.tracking import CubeState
 from cubeling.tracking.synthetic import open_synthetic
@@ -204,6 +206,18 @@ def test_a_talk_goes_on_from_a_checkpoint_in_mid_sentence(talked, monkeypatch):
     assert play(at, at + 2 * RATE) == after
 
 
+def test_only_a_talk_that_was_recorded_is_said_again(talked, short_session, monkeypatch):
+    monkeypatch.setattr(voices, "espeak", lambda: Voice((sys.executable, "-S", "-c", BUZZ)))
+    for path, speaker, listens in (
+        (short_session, LiveSpeaker, True),
+        (talked[1], RecordedSpeaker, False),
+    ):
+        options = SessionOptions(scenario="talk", source=str(path), pictures=False, robot="none")
+        with open_session(options) as session:
+            assert isinstance(session.speaker, speaker)
+            assert session.listens == listens
+
+
 def test_typed_lines_wait_for_the_end_of_a_reply_and_end_the_session(talked):
     steps, _, _ = talked
     typing = TypedLines(NullScreen(), ["one", "", " two "])
@@ -241,9 +255,6 @@ class SlowVoice(Voice):
 
 
 def test_the_speaker_says_only_what_is_still_wanted(talked):
-    from cubeling.app.speaking.speaker import LiveSpeaker
-    from cubeling.characters.speech import DEFAULT_PROFILE, Speech
-
     steps, _, _ = talked
     tone = Speech(np.zeros(800, np.float32), 8000)
     voice = SlowVoice(tone, 0.05)
