@@ -78,7 +78,7 @@ def talked(tmp_path_factory):
         patch.setattr(TrackedCube, "track", track)
         with open_session(options, source=Blank(source), screen=player) as session:
             run(session)
-        yield player.steps, path, track
+    return player.steps, path, track
 
 
 def at(steps, seconds):
