@@ -1,6 +1,5 @@
 """A talk in the terminal: the dialogue alone, without a picture and without a voice."""
 
-import time
 from collections.abc import Iterable
 
 import typer
@@ -13,9 +12,9 @@ from cubeling.app.scenarios.dialogue.vocabulary import TALK_VOCABULARY
 from cubeling.characters.behaviour import Dialogue
 from cubeling.characters.speech import TaggedText
 
-GREETING_S = 60.0
-"""So much time passes before the first line and after the last one is answered [s]: who waits for
-silence speaks then."""
+GREETING_S, STEP_S = 60.0, 0.5
+"""So long the first line is waited for at most, and the time between two looks [s]; it costs none,
+as there is no clock: who speaks first does so at once."""
 
 
 def talk_in_terminal(
@@ -31,23 +30,26 @@ def talk_in_terminal(
         raise AppError(f"{script.name} does not speak '{language}'")
     dialogue = Dialogue(script, language=language, seed=seed, vocabulary=TALK_VOCABULARY)
     feelings = Feelings(Personality.load(scenario.personality))
-    began = time.monotonic()
-    _answer(dialogue, feelings, 0.0)
-    _answer(dialogue, feelings, GREETING_S)
+    now = 0.0
+    while now < GREETING_S and not _answer(dialogue, feelings, now):
+        now += STEP_S
     for line in lines:
         if line.strip():
+            now += STEP_S
             dialogue.hear(line)
-            _answer(dialogue, feelings, GREETING_S + time.monotonic() - began)
+            _answer(dialogue, feelings, now)
 
 
-def _answer(dialogue: Dialogue, feelings: Feelings, now: float) -> None:
+def _answer(dialogue: Dialogue, feelings: Feelings, now: float) -> bool:
+    """Print what is said at a time [s], and return whether it is something."""
     feelings.update("idle", 0.0, now)
     turn = dialogue.update(now, feelings=feelings.intensities)
     if turn is None:
-        return
+        return False
     for word, value in turn.influences:
         feelings.influence(word, value)
     if turn.text:
         text = TaggedText.read(turn.text).text
         dialogue.remember_said(text)
         typer.echo(text)
+    return bool(turn.text)
