@@ -1,6 +1,8 @@
 """The commands of `cubeling study`."""
 
 import shlex
+import time
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -20,6 +22,9 @@ app = CommandGroup("Run a study: orders, tasks, questionnaires, simulated partic
 
 MAX_SIMULATED = 2000
 """Most simulated participants of a study."""
+
+GOODBYE_S = 2.5
+"""How long the last page may be fetched that thanks the participant [s]."""
 
 PLAY_GROUP = "How tasks are played"
 
@@ -65,6 +70,12 @@ def run(
             help="Let so many simulated participants take part, and write the report.",
         ),
     ] = 0,
+    page: Annotated[
+        bool,
+        typer.Option(
+            "--page", help="Ask on a page of this computer, in a browser, not in the terminal."
+        ),
+    ] = False,
     source: Annotated[
         str, typer.Option("--source", "-s", help="The camera.", rich_help_panel=PLAY_GROUP)
     ] = "camera:0",
@@ -96,7 +107,11 @@ def run(
         raise AppError("who takes part needs a code: --participant P01, or --simulated 24")
     if not output.parent.is_dir():
         raise AppError(f"there is no folder '{output.parent}' for the study '{output.name}'")
-    from cubeling.app.workshop.study.participants.running import run_participant, run_simulated
+    from cubeling.app.workshop.study.participants.running import (
+        StudyDesk,
+        run_participant,
+        run_simulated,
+    )
     from cubeling.app.workshop.study.participants.study_log import StudyFolder
     from cubeling.app.workshop.study.protocols.protocol_file import load_protocol
 
@@ -113,17 +128,30 @@ def run(
     from datetime import datetime
 
     from cubeling.app.workshop.study.participants.live_task import TaskSetup
+    from cubeling.app.workshop.study.participants.page_desk import PageDesk
     from cubeling.app.workshop.study.participants.terminal import TerminalDesk
+    from cubeling.app.workshop.study.protocols.protocol_file import BUNDLED_FOLDER
 
     log = study.begin(participant, datetime.now())
     done = len(log.plan) - len(log.left)
     if done:
         console.print(Text(f"{participant} goes on after {quantity(done, 'step')}.", "dim"))
-    desk = TerminalDesk(loaded, TaskSetup(source, robot, pictures, intrinsics), console)
+    setup = TaskSetup(source, robot, pictures, intrinsics)
     try:
-        run_participant(loaded, log, desk)
+        with ExitStack() as closing:
+            desk: StudyDesk = TerminalDesk(loaded, setup, console)
+            if page:
+                folder = Path() if file.parent == BUNDLED_FOLDER else file.parent
+                desk = opened = PageDesk(loaded, setup, folder)
+                closing.callback(opened.close)
+                console.print(Text.assemble("The participant's page: ", (opened.address, "cyan")))
+            run_participant(loaded, log, desk)
+            if isinstance(desk, PageDesk):
+                desk.thank()
+                time.sleep(GOODBYE_S)
     except KeyboardInterrupt:
-        again = shlex.join(["cubeling", "study", "run", protocol, "-o", str(output)])
+        asked = ["--page"] if page else []
+        again = shlex.join(["cubeling", "study", "run", protocol, "-o", str(output), *asked])
         console.print(
             Text(
                 f"\nStopped; all answers are kept. Go on: {again} --participant "

@@ -79,7 +79,7 @@ def played(
     return Column(
         name,
         "",
-        f"{meaning}; empty for sessions before version 0.3 that do not say it",
+        f"{meaning}; empty for older sessions, which do not say it",
         lambda info: info.played.get(name) or asked(info.options),
     )
 

@@ -76,7 +76,7 @@ def play_task(options: SessionOptions, task: StudyTask) -> TaskResult:
         for topic, message in step.messages().items():
             if topic in GOAL_TOPICS:
                 watch.see(topic, step.frame.timestamp, message)
-        if watch.over and (task.ends == "goal" or not watch.result.reached):
+        if watch.time_is_up or (watch.reached and task.ends == "goal"):
             raise _TaskOverError
 
     try:

@@ -102,7 +102,7 @@ def simulate_task(task: StudyTask, settings: Settings, rng: np.random.Generator)
     watch = GoalWatch(task.goal, task.limit_s)
     hand = _Hand([face.side for face in cube.faces], rng)
     frame = 0
-    while not watch.over:
+    while not (watch.reached or watch.time_is_up):
         time = frame * FRAME_S
         controls = hand.controls(time)
         outcome = scenario.update(controls, Situation(), Inputs())

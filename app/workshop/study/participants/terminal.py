@@ -13,6 +13,7 @@ from cubeling.app.workshop.study.participants.live_task import (
     play_task,
     task_options,
 )
+from cubeling.app.workshop.study.participants.stimulus_files import names_of
 from cubeling.app.workshop.study.participants.study_log import ParticipantLog
 from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
@@ -83,7 +84,7 @@ class TerminalDesk:
 
 def shown(stimuli: StimulusSet, step: PlannedStep) -> str:
     """Return the words for a stimulus: where it is, or what the experimenter is to show."""
-    where = stimuli.file.format_map(step.stimulus) if stimuli.file else ""
+    where = ", ".join(names_of(stimuli, step))
     others = {name: level for name, level in step.stimulus.items() if name != stimuli.pair}
     words = where or f"{step.place}. " + ", ".join(others.values())
     if not stimuli.pair:
@@ -91,7 +92,7 @@ def shown(stimuli: StimulusSet, step: PlannedStep) -> str:
     first, _, second = step.stimulus[stimuli.pair].partition(" / ")
     left, right = (first, second) if step.first_left else (second, first)
     # Who answers is not to know which is which; who shows them is.
-    return f"{words}: pair {step.place} [experimenter: left {left}, right {right}]"
+    return words if where else f"{words} [experimenter: left {left}, right {right}]"
 
 
 def choices(item: Item) -> list[str]:

@@ -144,9 +144,14 @@ class GoalWatch:
             self._reached = now
 
     @property
-    def over(self) -> bool:
-        """Whether the goal was reached, or the time is up."""
-        return self._reached is not None or self._last >= self._limit_s
+    def reached(self) -> bool:
+        """Whether the goal was reached within the limit."""
+        return self._reached is not None
+
+    @property
+    def time_is_up(self) -> bool:
+        """Whether the task has lasted as long as it may."""
+        return self._last >= self._limit_s
 
     @property
     def result(self) -> TaskResult:

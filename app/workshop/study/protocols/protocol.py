@@ -76,7 +76,8 @@ class StimulusSet:
     """The factor whose levels are pairs, as "a / b", shown side by side; "" for single ones."""
 
     file: str = ""
-    """Where a stimulus is, as "films/{person}-{origin}.mp4"; "" for what the experimenter shows."""
+    """Where a stimulus is, as "films/{person}-{origin}.mp4"; {member} is each one of a pair. "" for
+    what the experimenter shows."""
 
     def groups(self) -> dict[tuple[str, ...], tuple[Stimulus, ...]]:
         """Return the stimuli by the levels of `of`."""

@@ -223,7 +223,7 @@ def _stimuli(row: TomlTable) -> StimulusSet:
     for key in ("ask", "file"):
         try:
             for stimulus in stimuli:
-                getattr(found, key).format_map(stimulus)
+                getattr(found, key).format_map({**stimulus, "member": ""})
         except (KeyError, ValueError, IndexError, AttributeError):
             raise row.wrong(key, "names a factor that a stimulus lacks") from None
     for cell, group in found.groups().items():

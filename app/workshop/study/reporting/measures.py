@@ -197,17 +197,20 @@ def comparisons(title: str, groups: Mapping[str, Values], *, paired: bool) -> Re
         for (name, result), p in zip(found, corrected, strict=True)
     )
     note = "Effect: rank-biserial correlation, −1 to 1."
-    if len(groups) > 2:
-        codes = [
-            code for code in next(iter(groups.values())) if all(code in g for g in groups.values())
-        ]
+    shared = [code for code in next(iter(groups.values())) if _has_all(groups, code)]
+    if len(groups) > 2 and (len(shared) > 1 or not paired):
         samples = [
-            [group[code] for code in codes] if paired else list(group.values())
+            [group[code] for code in shared] if paired else list(group.values())
             for group in groups.values()
         ]
         test, statistic, p = compare_several(samples, paired=paired)
         note = f"All conditions: {test}, {figure(statistic)}, p = {p_value(p)}. {note}"
     return ReportTable(f"Conditions compared: {title}", ("difference of", *COMPARED), rows, note)
+
+
+def _has_all(groups: Mapping[str, Values], code: str) -> bool:
+    """Return whether a participant has a value under every condition."""
+    return all(code in values for values in groups.values())
 
 
 def _described(title: str, by: str, groups: Mapping[str, Values]) -> ReportTable:

@@ -25,6 +25,7 @@ from cubeling.app.workshop.study.bundled import (
 from cubeling.app.workshop.study.protocols.protocol_file import bundled_protocols
 from cubeling.app.workshop.study.reporting.statistics import (
     compare_paired,
+    compare_several,
     compare_unpaired,
     describe,
     sensitivity,
@@ -165,6 +166,15 @@ def test_effects_are_what_they_are_called():
     assert paired.interval[0] < paired.difference < paired.interval[1]
     assert compare_paired([2, 2], [2, 2]).p == compare_unpaired([2, 2], [2, 2]).p == 1.0
     assert describe([3.0]).interval == (3.0, 3.0)
+
+
+def test_samples_without_spread_are_compared_without_a_warning():
+    same = [[1.0, 2.0], [1.0, 2.0], [1.0, 2.0]]
+    assert compare_several(same, paired=True)[1:] == (0.0, 1.0)
+    assert compare_several([[1.0], [1.0], [1.0]], paired=False)[1:] == (0.0, 1.0)
+    name, _, p = compare_several([[1.0, 2.0, 3.0], [2.0, 3.0, 4.0], [3.0, 4.0, 5.0]], paired=True)
+    assert name == "Friedman"
+    assert p == pytest.approx(stats.chi2.sf(6.0, 2))
 
 
 def test_a_page_holds_all_it_shows_and_no_markup_of_others():
