@@ -219,16 +219,16 @@ def _cover(hands: tuple[Hand, ...]) -> Light:
             tip = root - (length * arm - 0.15 * finger * across) * size
             lines.append((root, tip, 0.24))
         for start, end, thick in lines:
-            ends = [tuple(np.rint(16 * each).astype(int).tolist()) for each in (start, end)]
-            cv2.line(mask, *ends, (255,), max(1, round(thick * size)), cv2.LINE_AA, shift=4)
+            one, other = np.rint(16 * np.stack([start, end])).astype(int).tolist()
+            cv2.line(mask, one, other, (255,), max(1, round(thick * size)), cv2.LINE_AA, shift=4)
     return np.asarray(cv2.GaussianBlur(mask, (0, 0), 0.6) / 255, np.float32)
 
 
 def _shading(cover: Light, seed: int) -> Light:
     """Return how bright skin is: darker towards its rim, and uneven."""
     inside = cv2.distanceTransform((cover > 0.5).astype(np.uint8), cv2.DIST_L2, 3)
-    uneven = np.random.default_rng(seed).normal(0, 1, (30, 40)).astype(np.float32)
-    uneven = cv2.resize(uneven, CAMERA.size, interpolation=cv2.INTER_CUBIC)
+    spots = np.random.default_rng(seed).normal(0, 1, (30, 40)).astype(np.float32)
+    uneven = cv2.resize(spots, CAMERA.size, interpolation=cv2.INTER_CUBIC)
     rim = np.minimum(inside / 14, 1.0)
     return np.asarray((0.6 + 0.4 * rim) * (1 + 0.06 * uneven), np.float32)
 
