@@ -1,7 +1,6 @@
 """A character that performs blocks while it plays: in a window, or without one."""
 
 import math
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -21,6 +20,7 @@ from cubeling.app.sound.session_sound import SPEECH_GAIN, at_sample_rate
 from cubeling.app.sound.synthesis import SAMPLE_RATE
 from cubeling.app.speaking.speech_video import AZIMUTH_RAD, ELEVATION_RAD
 from cubeling.app.speaking.view import View
+from cubeling.app.thread_turns import often_switching
 from cubeling.characters import Character
 from cubeling.characters.behaviour import feedback_xml
 from cubeling.characters.rendering import PortraitRenderer
@@ -32,10 +32,6 @@ MAX_FRAME_DOCUMENTS = 16
 MAX_FRAME_BYTES = 1 << 12
 """Size of the documents that are read for a frame besides the first one [B]: that may be long, and
 short ones of others do not wait for a flood of such."""
-
-SWITCH_S = 0.0005
-"""Longest time that a frame keeps the interpreter from the thread of the clients [s]. It needs it
-again after each call to a socket: at Python's 5 ms, those that connect wait for seconds."""
 
 
 class Output(Protocol):
@@ -182,19 +178,8 @@ def play_live(
     """
     player.prepare()
     player.settle(SETTLE_S, rate)
-    with _switching_often():
+    with often_switching():
         _play_frames(player, server, output, rate, clock)
-
-
-@contextmanager
-def _switching_often() -> Iterator[None]:
-    """Let threads take turns every `SWITCH_S`."""
-    usual = sys.getswitchinterval()
-    sys.setswitchinterval(SWITCH_S)
-    try:
-        yield
-    finally:
-        sys.setswitchinterval(usual)
 
 
 def _play_frames(

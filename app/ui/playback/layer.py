@@ -7,12 +7,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.errors import AppError
-from cubeling.app.output_path import dated_file, short_path
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Rect
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Card
@@ -38,9 +35,9 @@ from cubeling.app.ui.playback.requests import (
     WindowRequest,
 )
 from cubeling.app.ui.playback.scenario_card import ScenarioCard
+from cubeling.app.ui.playback.snapshot import keep_snapshot
 from cubeling.app.ui.playback.status import NO_STATUS, MenuChoice, SessionStatus
 from cubeling.app.ui.playback.typing_field import TypingField
-from cubeling.files import write_whole
 
 Picture = NDArray[np.uint8]
 
@@ -364,12 +361,4 @@ class PlaybackLayer:
         picture = self._picture_shown()
         if picture is None:
             return
-        try:
-            path = dated_file(
-                self._folder, self._status.scenario or "cubeling", ".png", self._now()
-            )
-            write_whole(path, cv2.imencode(".png", picture)[1].tobytes(), AppError)
-        except (AppError, OSError) as error:
-            self.notify(f"No snapshot was kept: {error}")
-        else:
-            self.notify(f"Snapshot: {short_path(path)}")
+        self.notify(keep_snapshot(self._folder, self._status.scenario, picture, self._now()))

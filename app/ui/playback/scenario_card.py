@@ -84,12 +84,12 @@ def _draw(scenarios: tuple[str, ...], present: str, width: float, scale: float) 
     canvas.text(wide / 2, 50, TITLE, size, INK, "middle")
     for place, name in enumerate(scenarios):
         x, y = _corner(place, tile, columns)
-        canvas.picture(x, y, _picture(name, round(tile * scale)), 12)
+        canvas.picture(x, y, scenario_picture(name, round(tile * scale)), 12)
         canvas.disc(x + 24, y + 24, 17, ACCENT)
         canvas.text(x + 24, y + 31, f"{place + 1}", 20, PAPER, "middle")
         y += tile * 9 / 16
         canvas.text(x + 4, y + 25, name, 20, ACCENT if name == present else INK)
-        lines = wrap_text(_summary(name), tile - 8, SUMMARY_SIZE)
+        lines = wrap_text(summary_of(name), tile - 8, SUMMARY_SIZE)
         if len(lines) > MAX_LINES:
             lines[MAX_LINES - 1 :] = [f"{lines[MAX_LINES - 1]} …"]
         for number, line in enumerate(lines):
@@ -100,7 +100,7 @@ def _draw(scenarios: tuple[str, ...], present: str, width: float, scale: float) 
     return canvas.card(left, top, 0.97)
 
 
-def _summary(name: str) -> str:
+def summary_of(name: str) -> str:
     """Return what a scenario is; that of another package may be broken."""
     try:
         return scenario_summary(name)
@@ -108,7 +108,7 @@ def _summary(name: str) -> str:
         return "it cannot be used: choose it to see why"
 
 
-def _picture(name: str, width: int) -> NDArray[np.uint8]:
+def scenario_picture(name: str, width: int) -> NDArray[np.uint8]:
     """Return the picture of a scenario, (9/16 width, width, 3) BGR; that of others is plain."""
     height = round(width * 9 / 16)
     folder = resources.files("cubeling.app.ui.playback") / "scenario_pictures"

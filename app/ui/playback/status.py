@@ -72,6 +72,9 @@ class SessionStatus:
     scenario: str = ""
     """Name of the scenario that plays; "" for none."""
 
+    source: str = ""
+    """URI of what its frames come from."""
+
     paused: bool = False
     """Whether it is paused."""
 

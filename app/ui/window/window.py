@@ -16,6 +16,7 @@ from cubeling.app.ui.canvas import PICTURE_HEIGHT, Card
 from cubeling.app.ui.cards.hint_reader import HintReader
 from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import cards_over, notice_card, virtual_robot_side
+from cubeling.app.ui.cards.shown_step import shown_step
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.panels.drawing.layer import PanelLayer
@@ -221,17 +222,8 @@ class Window(WindowSurface):
     def _cards_of(self, step: Step, robot: RobotView, size: tuple[int, int]) -> list[Card]:
         """Return the cards over a step whose picture is shown in a size [px]."""
         assert step.picture is not None
-        width, mirrored = step.picture.shape[1], self._layer.mirrored
-        scale, mirrored_width = size[0] / width, width if mirrored else 0
-        subjects = (scaled_rect(each, scale, mirrored_width) for each in step.subjects)
-        figures = (each and scaled_rect(each, scale, mirrored_width) for each in step.figures)
-        close_up = step.close_up
-        if close_up is not None and mirrored:
-            close_up = np.ascontiguousarray(close_up[:, ::-1])
-        areas = self._panel_areas(size)
-        step = replace(
-            step, subjects=(*subjects, *areas), figures=tuple(figures), close_up=close_up
-        )
+        step = shown_step(step, size[0] / step.picture.shape[1], self._layer.mirrored)
+        step = replace(step, subjects=(*step.subjects, *self._panel_areas(size)))
         self._virtual_robot.fit(virtual_robot_side(size[1]))
         return cards_over(step, robot, size, self._virtual_robot, self._layout)
 
@@ -279,15 +271,3 @@ class Window(WindowSurface):
             for left, top, wide, high in rects
         ]
         return [(scale * x, scale * y, scale * to_x, scale * to_y) for x, y, to_x, to_y in areas]
-
-
-def scaled_rect(rect: Rect, scale: float, mirrored_width: float = 0.0) -> Rect:
-    """Return a place in a picture that is shown larger, or as in a mirror if its width is given.
-
-    >>> scaled_rect((1.0, 2.0, 3.0, 4.0), 2.0), scaled_rect((1.0, 2.0, 3.0, 4.0), 2.0, 10.0)
-    ((2.0, 4.0, 6.0, 8.0), (14.0, 4.0, 18.0, 8.0))
-    """
-    left, top, right, bottom = rect
-    if mirrored_width:
-        left, right = mirrored_width - right, mirrored_width - left
-    return scale * left, scale * top, scale * right, scale * bottom

@@ -10,10 +10,10 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.ui.cards.shown_step import scaled_rect
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import Record, Seek
 from cubeling.app.ui.window import Window
-from cubeling.app.ui.window.window import scaled_rect
 from cubeling.tracking import open_source
 
 
