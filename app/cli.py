@@ -30,6 +30,8 @@ GROUPS = {
         "play": "Play with the cube in front of a camera.",
         "talk": "Talk with a character: type, and it answers with voice, face and gestures.",
         "show": "Show a play: several characters speak and act by one file.",
+        "serve": "Play in a browser: scan the code with a phone, whose camera and screen are then "
+        "yours.",
         "replay": "Play a recorded session: in a window, to a video, or only to its summary.",
         "cube": "Write a cube as a sheet to print, cut, fold and glue.",
         "calibrate": "Measure the camera's lens: wave the cube in front of it for about "

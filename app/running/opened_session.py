@@ -1,6 +1,6 @@
 """What is opened for a session, and what may be exchanged in it while it runs."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,12 +23,21 @@ from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import Screen
 from cubeling.bad_input import BadInputError
-from cubeling.tracking import CubeModel, FrameSource
+from cubeling.tracking import CubeModel, FrameSource, open_source
 
 if TYPE_CHECKING:
     from cubeling.app.running.players import PlayerPublisher
     from cubeling.app.running.recording import SessionRecording
     from cubeling.app.sound import SessionSound
+
+
+OpenCamera = Callable[[str, tuple[int, int]], FrameSource]
+"""Opens a camera by its URI, with the width and height to ask for [px]; raises TrackingError."""
+
+
+def open_camera(uri: str, size: tuple[int, int]) -> FrameSource:
+    """Open a camera of this computer or of its network."""
+    return open_source(uri, size=size)
 
 
 @dataclass
@@ -100,6 +109,9 @@ class OpenedSession:
 
     first_source: FrameSource
     """The source at the start, which whoever opened it closes."""
+
+    open_camera: "OpenCamera" = open_camera
+    """Opens a camera that the player chooses, by its URI and the size to ask for."""
 
     recording: "SessionRecording | None" = None
     """Records the session, or None."""

@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -15,8 +15,15 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import CastScenario, ListeningScenario, NamingScenario
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
+from cubeling.app.running.front_end import FrontEnd
 from cubeling.app.running.kept_lens import LensStore
-from cubeling.app.running.opened_session import OpenedSession, is_replay, scenario_of, settings_of
+from cubeling.app.running.opened_session import (
+    OpenedSession,
+    is_replay,
+    open_camera,
+    scenario_of,
+    settings_of,
+)
 from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.typed_lines import TypedLines
@@ -47,7 +54,7 @@ if TYPE_CHECKING:
     import moderngl
 
     from cubeling.app.running.players import PlayerPublisher
-    from cubeling.app.sound import SessionSound
+    from cubeling.app.sound import Mixer, SessionSound, SoundOutput
 
 
 @contextmanager
@@ -59,6 +66,7 @@ def open_session(
     screen: Screen | None = None,
     typed: Iterable[str] | None = None,
     until_over: bool = False,
+    front_end: FrontEnd | None = None,
     player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
@@ -84,6 +92,8 @@ def open_session(
         none.
     until_over
         Whether the session ends when the scenario is over.
+    front_end
+        What shows the pictures instead of a window of this computer; None for a window.
     player
         Publishes the character's actions and emotions; the caller closes its network.
     ending
@@ -143,8 +153,15 @@ def open_session(
         context = sound = None
         monitor = SessionMonitor(options, FrameTimes(time.perf_counter))
         if screen is None:
-            sound = open_sound(options, character, closing)
-            screen, context = _open_screen(options, source, sound, preferences, monitor, closing)
+            loudspeaker = None if front_end is None else front_end.open_loudspeaker
+            sound = open_sound(options, character, closing, loudspeaker)
+            if front_end is not None:
+                folder = options.folder or default_folder()
+                screen, context = front_end.open_screen(source.size, folder, closing)
+            else:
+                screen, context = _open_screen(
+                    options, source, sound, preferences, monitor, closing
+                )
         if typed is not None or until_over:
             screen = TypedLines(screen, typed)
         playground = Playground(
@@ -235,6 +252,7 @@ def open_session(
             ending=ending,
             first_source=source,
             recording=recording,
+            open_camera=open_camera if front_end is None else front_end.open_camera,
         )
         closing.callback(session.close)
         closing.callback(clock.release)  # the robot's connection is closed in real time
@@ -250,7 +268,10 @@ def names_of_cast(options: SessionOptions, scenario: Scenario) -> tuple[str, ...
 
 
 def open_sound(
-    options: SessionOptions, character: Character, closing: ExitStack
+    options: SessionOptions,
+    character: Character,
+    closing: ExitStack,
+    loudspeaker: "Callable[[Mixer], SoundOutput] | None" = None,
 ) -> "SessionSound | None":
     """Start the sound of a window or a video; None if it cannot have any."""
     path = options.output
@@ -268,6 +289,7 @@ def open_sound(
         live=options.windowed,
         muted=options.muted,
         moods=not is_real_robot(options.robot),  # such a robot has a voice of its own
+        **({} if loudspeaker is None else {"loudspeaker": loudspeaker}),
     )
     closing.callback(sound.close)
     return sound

@@ -7,7 +7,7 @@ from cubeling.app.sound.bank import SoundBank, write_wave
 from cubeling.app.sound.cues import Cue, SoundCues
 from cubeling.app.sound.loudspeaker import Loudspeaker, NoSoundError
 from cubeling.app.sound.mixer import Mixer
-from cubeling.app.sound.session_sound import SessionSound
+from cubeling.app.sound.session_sound import SessionSound, SoundOutput
 from cubeling.app.sound.sounds import SOUNDS
 from cubeling.app.sound.synthesis import SAMPLE_RATE
 
@@ -21,5 +21,6 @@ __all__ = [
     "SessionSound",
     "SoundBank",
     "SoundCues",
+    "SoundOutput",
     "write_wave",
 ]

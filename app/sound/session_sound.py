@@ -1,5 +1,8 @@
 """What is heard of a session, on a loudspeaker or in a video."""
 
+from collections.abc import Callable
+from typing import Protocol
+
 import numpy as np
 
 from cubeling.app.pipeline.step import Step, speech_start
@@ -15,6 +18,20 @@ SPEECH_GAIN = 0.9
 """Amplitude of speech beside the other sounds."""
 
 
+class SoundOutput(Protocol):
+    """Lets a mixer be heard, on threads of its own: a `Loudspeaker`, or a browser."""
+
+    playing: bool
+    """Whether cues are heard now."""
+
+    problem: str
+    """Why nothing is heard; "" while all is well."""
+
+    def close(self) -> None:
+        """Fall silent; a second call does nothing."""
+        ...
+
+
 class SessionSound:
     """Turns the steps of a session into sound. Whoever makes it closes it.
 
@@ -28,15 +45,24 @@ class SessionSound:
         Whether nothing sounds at first.
     moods
         Whether the robot's moods are heard.
+    loudspeaker
+        Opens what a live session is heard on.
     """
 
     def __init__(
-        self, mixer: Mixer, *, live: bool = False, muted: bool = False, moods: bool = True
+        self,
+        mixer: Mixer,
+        *,
+        live: bool = False,
+        muted: bool = False,
+        moods: bool = True,
+        loudspeaker: Callable[[Mixer], SoundOutput] = Loudspeaker,
     ) -> None:
         self.mixer = mixer
         """Its `volume` may be changed at any time."""
         self._live, self._moods = live, moods
-        self._loudspeaker: Loudspeaker | None = None
+        self._open_loudspeaker = loudspeaker
+        self._loudspeaker: SoundOutput | None = None
         self._character: Character | None = None
         self._cues: SoundCues | None = None
         self._line: SpokenLine | None = None
@@ -51,7 +77,7 @@ class SessionSound:
     def muted(self, muted: bool) -> None:
         self._muted = muted
         if self._live and not muted and self._loudspeaker is None:
-            self._loudspeaker = Loudspeaker(self.mixer)
+            self._loudspeaker = self._open_loudspeaker(self.mixer)
 
     @property
     def problem(self) -> str:

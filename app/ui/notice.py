@@ -31,6 +31,10 @@ def notice(health: Health) -> Notice | None:
         )
     if health.name.startswith("http"):
         return Notice("No picture from the phone", "Is its camera app open, and in this network?")
+    if health.name == "phone":
+        return Notice(
+            "The phone sends no picture", "Open its page again, and let it use the camera."
+        )
     if health.frozen:
         return Notice("The picture is frozen", "Uncover the camera, or plug it in again.")
     return Notice("Camera lost: plug it in again", "The session then continues.")

@@ -16,6 +16,7 @@ from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import Step
 from cubeling.app.preferences import PreferenceStore
+from cubeling.app.running.front_end import FrontEnd
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
@@ -38,6 +39,7 @@ def play_session(
     *,
     source: FrameSource | None = None,
     replayed: SessionFile | None = None,
+    front_end: FrontEnd | None = None,
     player: "PlayerPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
@@ -58,6 +60,7 @@ def play_session(
             options,
             source=source,
             replayed=replayed,
+            front_end=front_end,
             player=player,
             ending=ending,
             preferences=preferences,

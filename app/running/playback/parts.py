@@ -85,7 +85,7 @@ def _opens(uri: str) -> bool:
 
 
 def _open_camera(session: OpenedSession, uri: str) -> FrameSource:
-    return open_source(uri, size=session.source.size)
+    return session.open_camera(uri, session.source.size)
 
 
 def _exchange_camera(

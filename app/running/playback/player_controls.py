@@ -53,6 +53,7 @@ class PlayerControls:
         self._session.screen.report(
             SessionStatus(
                 scenario=session.options.scenario,
+                source=session.options.source,
                 paused=transport.paused or transport.ended,
                 seeking=transport.seeking,
                 recorded=recording is not None,

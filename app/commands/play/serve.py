@@ -1,0 +1,204 @@
+"""The command `cubeling serve`."""
+
+import math
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+
+from cubeling.app.admission import Token
+from cubeling.app.commands.play.play_options import (
+    FILES_GROUP,
+    CastOption,
+    CharacterOption,
+    CodecOption,
+    CubesOption,
+    FolderOption,
+    IntrinsicsOption,
+    LanguageOption,
+    PersonalityOption,
+    QualityOption,
+    RecordOption,
+    RobotOption,
+    codecs_of,
+    describe,
+)
+from cubeling.app.commands.play.preference_options import DEFAULT_FILE, GivenPreferences
+from cubeling.app.errors import AppError
+from cubeling.app.pipeline.choices import cast_of
+from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
+from cubeling.app.scenarios import check_scenario, scenario_names
+
+if TYPE_CHECKING:
+    from contextlib import ExitStack
+
+    import moderngl
+
+    from cubeling.app.session import SessionOptions
+    from cubeling.app.ui.screen import Screen
+    from cubeling.app.ui.web.server import WebServer
+    from cubeling.tracking import FrameSource
+
+PHONE = "phone"
+"""The camera of whoever opens the page."""
+
+PORT = 8420
+"""The usual port; no registered service has it."""
+
+WAIT_S = 0.2
+"""While no page sends pictures, Ctrl-C is heard this often [s]."""
+
+
+def serve(
+    scenario: Annotated[
+        str,
+        typer.Option(
+            help="What is played first: "
+            + "; ".join(map(describe, scenario_names()))
+            + " The page shows them all.",
+            autocompletion=lambda: list(scenario_names()),
+        ),
+    ] = "companion",
+    lan: Annotated[
+        bool,
+        typer.Option("--lan", help="Let phones of your network in, over TLS; else this computer."),
+    ] = False,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="The TCP port; 0: any.")] = PORT,
+    source: Annotated[
+        str,
+        typer.Option(
+            "--source",
+            "-s",
+            help="phone, the camera of whoever opens the page; or another, as in cubeling play.",
+        ),
+    ] = PHONE,
+    cubes: CubesOption = None,
+    character: CharacterOption = None,
+    cast: CastOption = None,
+    personality: PersonalityOption = None,
+    language: LanguageOption = None,
+    intrinsics: IntrinsicsOption = None,
+    quality: QualityOption = AUTO_QUALITY,
+    robot: RobotOption = "sim",
+    record: RecordOption = None,
+    codec: CodecOption = "auto",
+    folder: FolderOption = None,
+    token: Annotated[
+        str | None,
+        typer.Option(
+            help="The secret of the address, of 8 to 128 characters; without it, a new one.",
+            rich_help_panel=FILES_GROUP,
+        ),
+    ] = None,
+    preferences_file: Annotated[
+        Path,
+        typer.Option(
+            "--preferences",
+            help="The file beside which lenses and the certificate are kept.",
+            show_default=False,
+            rich_help_panel=FILES_GROUP,
+        ),
+    ] = DEFAULT_FILE,
+) -> None:
+    """Play in a browser: scan the code with a phone, whose camera and screen are then yours.
+
+    On this computer, open the printed address. With --lan, the phone's browser asks once whether to
+    trust this computer, as its certificate is made on the spot; over USB (adb reverse) it does not.
+
+    Example: cubeling serve --lan
+    """
+    check_scenario(scenario)
+    secret = Token.generate() if token is None else Token(token)
+    from cubeling.app.running.option_checks import check_inputs, check_output_paths
+    from cubeling.app.session import SessionOptions
+
+    first, others = cast_of(cast, character)
+    record_codec, _ = codecs_of(codec, record, None)
+    options = SessionOptions(
+        scenario=scenario,
+        source=f"{PHONE}:" if source == PHONE else source,
+        cubes=tuple(cubes or ()),
+        character=first,
+        others=others,
+        personality=personality,
+        language=language,
+        intrinsics=intrinsics,
+        quality=checked_quality(quality),
+        robot=robot,
+        record=record,
+        codec=record_codec,
+        folder=folder,
+        patience_s=math.inf
+        if source == PHONE
+        else 30.0,  # a phone may sleep for as long as it likes
+    )
+    check_output_paths(options)
+    check_inputs(options)
+    from cubeling.app.scenarios.roles import check_cubes
+
+    check_cubes(scenario, options.cubes)
+    _serve(options, secret, port, lan, preferences_file)
+
+
+def _serve(
+    options: "SessionOptions", token: Token, port: int, lan: bool, preferences_file: Path
+) -> None:
+    try:
+        from cubeling.app.ui.web.opening import open_server, page_address
+    except ImportError as error:
+        raise AppError(
+            f"a browser needs the library {error.name}: pip install aiohttp cryptography segno"
+        ) from error
+    console = Console(soft_wrap=True, highlight=False)
+    with closing(
+        open_server(port, token, lan, preferences_file.parent, own_camera=not _is_phone(options))
+    ) as server:
+        for line in page_address(server, token):
+            console.print(line)
+        _play(options, server, preferences_file)
+
+
+def _play(options: "SessionOptions", server: "WebServer", preferences_file: Path) -> None:
+    # Loaded while the phone is scanning.
+    from dataclasses import replace
+
+    from cubeling.app.commands.play.progress import play_session
+    from cubeling.app.running.front_end import FrontEnd
+    from cubeling.app.thread_turns import often_switching
+    from cubeling.app.ui.web.camera import PageCameras
+    from cubeling.app.ui.web.opening import open_page_screen
+    from cubeling.app.ui.web.speaker import PageSpeaker
+
+    cameras = PageCameras(server)
+
+    def open_screen(
+        size: tuple[int, int], folder: Path, closing: "ExitStack"
+    ) -> "tuple[Screen, moderngl.Context]":
+        return open_page_screen(server, cameras, size, folder, closing)
+
+    front_end = FrontEnd(open_screen, lambda mixer: PageSpeaker(mixer, server), cameras.open)
+    camera: FrameSource | None = None
+    if _is_phone(options):
+        while not server.feed.wait_for_first(WAIT_S):
+            pass
+        options = replace(options, source=cameras.uri)
+        camera = cameras.open(options.source, (0, 0))
+    options, kept = GivenPreferences({}, preferences_file).open(options)
+    try:
+        with often_switching():
+            play_session(
+                options,
+                f"playing {options.scenario}",
+                source=camera,
+                front_end=front_end,
+                preferences=kept,
+            )
+    finally:
+        if camera is not None:
+            camera.close()
+
+
+def _is_phone(options: "SessionOptions") -> bool:
+    return options.source.startswith(f"{PHONE}:")

@@ -1,0 +1,1 @@
+"""A browser as window and camera: a page, and the server that exchanges pictures with it."""

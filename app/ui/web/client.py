@@ -1,0 +1,149 @@
+"""One page that is connected: what waits to be sent to it, and what it sends."""
+
+import asyncio
+import contextlib
+from collections import deque
+from collections.abc import Callable
+from typing import Protocol
+
+import msgspec
+from aiohttp import WSMsgType, web
+
+from cubeling.app.errors import AppError
+from cubeling.app.ui.web.limits import RateLimit, WebLimits
+from cubeling.app.ui.web.messages import PICTURE, Role, Said, pack, read_said, unpack
+
+MAX_WAITING = 32
+"""Messages and sounds that wait for a page; of more, the oldest are left out."""
+
+LAST_WORDS_S = 1.0
+"""Time for the message that says why a page is disconnected [s]."""
+
+
+class ShownPicture(Protocol):
+    """A picture for the pages."""
+
+    number: int
+    """Of the picture, from 1; a page names it when it has shown it."""
+
+    def data(self, kind: str) -> bytes | None:
+        """Return it encoded: "cards", "plain" or "cutout"; None if nobody wanted that."""
+        ...
+
+    def taken(self, page: str) -> float:
+        """Return when its frame was taken, by the clock of the page whose camera took it, else 0."""
+        ...
+
+
+class PageClient:
+    """A page with the token. All of it happens in the loop of the server.
+
+    Nothing that waits for it grows: the newest picture replaces the one before it, and at most
+    `WebLimits.pictures_in_flight` are on their way.
+    """
+
+    def __init__(
+        self,
+        socket: web.WebSocketResponse,
+        page: str,
+        role: Role,
+        kind: str,
+        limits: WebLimits,
+        clock: Callable[[], float],
+    ) -> None:
+        self.page, self.role, self.kind = page, role, kind
+        self.heard = clock()
+        """When it said something last [s]."""
+        self._socket, self._limits, self._clock = socket, limits, clock
+        self._messages = RateLimit(limits.messages_per_s)
+        self._bytes = RateLimit(limits.bytes_per_s)
+        self._texts: deque[str] = deque(maxlen=MAX_WAITING)
+        self._sounds: deque[bytes] = deque(maxlen=MAX_WAITING)
+        self._picture: ShownPicture | None = None
+        self._in_flight: deque[int] = deque()
+        self._waiting = asyncio.Event()
+
+    def tell(self, **message: object) -> None:
+        """Send a message in JSON."""
+        self._texts.append(msgspec.json.encode(message).decode())
+        self._waiting.set()
+
+    def show(self, picture: ShownPicture) -> None:
+        """Send a picture, unless a newer one comes before it can be sent."""
+        self._picture = picture
+        self._waiting.set()
+
+    def sound(self, message: bytes) -> None:
+        """Send a binary message that must not be left out, if it is read soon enough."""
+        self._sounds.append(message)
+        self._waiting.set()
+
+    async def serve(
+        self, hear: Callable[[Said], None], see: Callable[[int, float, bytes], None]
+    ) -> str:
+        """Exchange messages until the page leaves; return why it has to, or "".
+
+        `hear` is called with what it says, and `see` with number, time and JPEG of its pictures.
+        """
+        sending = asyncio.create_task(self._send())
+        try:
+            why = await self._receive(hear, see)
+        finally:
+            sending.cancel()
+            with contextlib.suppress(asyncio.CancelledError, ConnectionError):
+                await sending
+        return why
+
+    async def close(self, why: str) -> None:
+        """Disconnect it, and say why."""
+        with contextlib.suppress(TimeoutError, ConnectionError, RuntimeError):
+            await asyncio.wait_for(
+                self._socket.close(code=4000, message=why.encode()[:120]), LAST_WORDS_S
+            )
+
+    async def _receive(
+        self, hear: Callable[[Said], None], see: Callable[[int, float, bytes], None]
+    ) -> str:
+        async for message in self._socket:
+            now = self.heard = self._clock()
+            if message.type not in (WSMsgType.TEXT, WSMsgType.BINARY):
+                return ""
+            if not (self._messages.allows(1, now) and self._bytes.allows(len(message.data), now)):
+                return "this page sends too much"
+            try:
+                if message.type == WSMsgType.BINARY:
+                    _, number, taken, jpeg = unpack(message.data)
+                    see(number, taken, jpeg)
+                elif len(message.data) > self._limits.text_bytes:
+                    return "this page says too much"
+                else:
+                    self._hear(read_said(message.data), hear)
+            except AppError as error:
+                return str(error)
+        return ""
+
+    def _hear(self, said: Said, hear: Callable[[Said], None]) -> None:
+        if said.do == "shown":
+            while self._in_flight and self._in_flight[0] <= said.id:
+                self._in_flight.popleft()
+            self._waiting.set()
+        else:
+            hear(said)
+
+    async def _send(self) -> None:
+        while True:
+            await self._waiting.wait()
+            self._waiting.clear()
+            while self._texts:
+                await self._socket.send_str(self._texts.popleft())
+            while self._sounds:
+                await self._socket.send_bytes(self._sounds.popleft())
+            picture, free = self._picture, self._limits.pictures_in_flight - len(self._in_flight)
+            if picture is None or free <= 0:
+                continue
+            self._picture = None
+            data = picture.data(self.kind)
+            if data is not None:
+                self._in_flight.append(picture.number)
+                taken = picture.taken(self.page)
+                await self._socket.send_bytes(pack(PICTURE, picture.number, taken, data))

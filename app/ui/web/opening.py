@@ -1,0 +1,119 @@
+"""Opening the server of the page, and the screen that it is."""
+
+import io
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import segno
+from rich.markup import escape
+
+from cubeling.app.admission import Token
+from cubeling.app.pipeline.registry import scenario_names
+from cubeling.app.sound import SAMPLE_RATE
+from cubeling.app.ui.cards.overlay import virtual_robot_side
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.app.ui.playback.scenario_card import scenario_picture, summary_of
+from cubeling.app.ui.web.camera import PageCameras
+from cubeling.app.ui.web.messages import TILE, pack
+from cubeling.app.ui.web.picture import encoded
+from cubeling.app.ui.web.screen import WebScreen
+from cubeling.app.ui.web.server import Listener, WebServer
+
+if TYPE_CHECKING:
+    import moderngl
+
+LOOPBACK = "127.0.0.1"
+
+TILE_WIDTH_PX = 400
+"""Width of a scenario's picture."""
+
+
+def open_server(
+    port: int, token: Token, lan: bool, folder: Path | None, *, own_camera: bool = False
+) -> WebServer:
+    """Open the server; the caller closes it.
+
+    Parameters
+    ----------
+    port
+        The TCP port; 0 for any.
+    token
+        What lets in.
+    lan
+        Whether this computer's network is let in, over TLS.
+    folder
+        Where the certificate is kept; None for nowhere.
+    own_camera
+        Whether the session has a camera of its own, so that pages send none.
+
+    Raises
+    ------
+    AppError
+        The port is in use, or there is no network.
+    """
+    listeners = [Listener(LOOPBACK, port)]
+    fingerprint = ""
+    if lan:
+        from cubeling.app.ui.web.certificate import lan_address, tls_context
+
+        host = lan_address()
+        tls, fingerprint = tls_context(host, folder)
+        listeners.append(Listener(host, port, tls))
+    names = scenario_names()
+    welcome = {
+        "scenarios": [{"name": each, "summary": summary_of(each)} for each in names],
+        "rate": SAMPLE_RATE,
+        "camera": not own_camera,
+    }
+    server = WebServer(listeners, token, welcome)
+    server.fingerprint = fingerprint
+    server.tiles = [
+        pack(TILE, number, 0.0, encoded(scenario_picture(name, TILE_WIDTH_PX)))
+        for number, name in enumerate(names)
+    ]
+    return server
+
+
+def page_address(server: WebServer, token: Token) -> Iterator[str]:
+    """Yield what to print: how a browser finds the page, in Rich's markup."""
+    own = f"http://localhost:{server.ports[0]}/#{token.text}"
+    if not server.fingerprint:
+        yield f"Open this in a browser of this computer: [bold cyan]{escape(own)}[/]"
+        yield "[dim]A phone? Add [cyan]--lan[/]. Ctrl-C ends.[/]"
+        return
+    host, port = server.listeners[1].host, server.ports[1]
+    address = f"https://{host}:{port}/#{token.text}"
+    drawn = io.StringIO()
+    segno.make(address, error="l", micro=False).terminal(drawn, compact=True)
+    yield escape(drawn.getvalue().rstrip("\n"))
+    yield f"Scan it with a phone in this network, or open [bold cyan]{escape(address)}[/]"
+    yield (
+        "The browser warns once, as this computer has made the certificate itself: "
+        "choose Advanced, then Proceed. Its SHA-256 begins with "
+        f"[bold]{server.fingerprint[:23]}[/]"
+    )
+    yield (
+        f"[dim]Without a warning, over USB: [cyan]adb reverse tcp:{port} tcp:{port}[/], then "
+        f"{escape(own)} on the phone, or in a browser of this computer. Ctrl-C ends.[/]"
+    )
+
+
+def open_page_screen(
+    server: WebServer,
+    cameras: PageCameras,
+    size: tuple[int, int],
+    folder: Path,
+    closing: ExitStack,
+) -> "tuple[WebScreen, moderngl.Context]":
+    """Open a session's screen on the pages, and the context to draw in; the stack closes both."""
+    from cubeling.characters.rendering import create_context
+
+    context = create_context()
+    closing.callback(context.release)
+    virtual_robot = VirtualRobot(context, virtual_robot_side(size[1]))
+    closing.callback(virtual_robot.close)
+    screen = WebScreen(server, lambda: cameras.uri, folder, virtual_robot)
+    closing.callback(screen.close)
+    return screen, context

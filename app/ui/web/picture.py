@@ -1,0 +1,110 @@
+"""Encoding the pictures for the pages, on a thread of its own."""
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Picture = NDArray[np.uint8]
+
+JPEG_QUALITY = 82
+"""Of OpenCV's encoder, 0…100: finer than a screen of a phone shows."""
+
+WEBP_QUALITY = 80
+"""The same of pictures with transparency."""
+
+
+@dataclass(frozen=True)
+class PagePicture:
+    """A picture of one step for the pages; see `client.ShownPicture`."""
+
+    number: int
+    """Of the picture, from 1; a page names it when it has shown it."""
+
+    page: str
+    """The page whose camera has taken its frame; "" for another camera."""
+
+    page_time: float
+    """When, by the clock of that page [s]."""
+
+    encoded: dict[str, bytes] = field(default_factory=dict)
+    """It, by the kinds that somebody looks at."""
+
+    def data(self, kind: str) -> bytes | None:
+        """Return it encoded; None if nobody wanted that kind when it was drawn."""
+        return self.encoded.get(kind)
+
+    def taken(self, page: str) -> float:
+        """Return when its frame was taken, by the clock of a page; 0 if by another camera."""
+        return self.page_time if page == self.page else 0.0
+
+
+class PictureEncoder:
+    """Encodes the newest pictures and hands them on; what comes too quickly is left out.
+
+    Parameters
+    ----------
+    show
+        Called with each encoded picture, on the encoder's thread.
+    """
+
+    def __init__(self, show: Callable[[PagePicture], None]) -> None:
+        self._show = show
+        self._changed = threading.Condition()
+        self._newest: tuple[PagePicture, dict[str, Picture]] | None = None
+        self._closing = False
+        self._thread = threading.Thread(target=self._run, name="page pictures", daemon=True)
+        self._thread.start()
+
+    def encode(self, picture: PagePicture, pixels: dict[str, Picture]) -> None:
+        """Encode what is seen in some kinds; nobody changes the pixels any more."""
+        with self._changed:
+            self._newest = picture, pixels
+            self._changed.notify()
+
+    def close(self) -> None:
+        """End the thread; a second call does nothing."""
+        with self._changed:
+            self._closing = True
+            self._changed.notify()
+        self._thread.join(2.0)
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._closing or self._newest is not None)
+                if self._closing or self._newest is None:
+                    return
+                (picture, pixels), self._newest = self._newest, None
+            for kind, image in pixels.items():
+                picture.encoded[kind] = encoded(image)
+            self._show(picture)
+
+
+def encoded(image: Picture) -> bytes:
+    """Return a picture as JPEG, (H, W, 3) BGR, or as WebP, (H, W, 4) BGRA."""
+    if image.shape[2] == 4:
+        done, data = cv2.imencode(".webp", image, (cv2.IMWRITE_WEBP_QUALITY, WEBP_QUALITY))
+    else:
+        done, data = cv2.imencode(".jpg", image, (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY))
+    assert done, "OpenCV encodes any picture of a camera's size"
+    return data.tobytes()
+
+
+def cut_out(picture: Picture, camera: Picture) -> Picture:
+    """Return what was drawn over the camera's picture, (H, W, 4) BGRA: the rest is transparent.
+
+    A shadow, which darkens the camera's picture, becomes black that lets as much through.
+    """
+    drawn, seen = picture.astype(np.int16), camera.astype(np.int16)
+    changed = np.abs(drawn - seen).max(axis=2)
+    result = cv2.cvtColor(picture, cv2.COLOR_BGR2BGRA)
+    result[..., 3] = np.where(changed > CUT_OUT_STEP, 255, 0)
+    return np.asarray(result, np.uint8)
+
+
+CUT_OUT_STEP = 6
+"""Change of a pixel from which on something was drawn there, of 255."""

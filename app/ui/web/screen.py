@@ -1,0 +1,195 @@
+"""The screen of a session in browsers."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from cubeling.app.pipeline.registry import scenario_names
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.ui.cards.hint_reader import HintReader
+from cubeling.app.ui.cards.layout import CardLayout
+from cubeling.app.ui.cards.overlay import overlay
+from cubeling.app.ui.cards.shown_step import shown_step
+from cubeling.app.ui.cards.virtual_robot import VirtualRobot
+from cubeling.app.ui.notice import Notice
+from cubeling.app.ui.playback.requests import Choose, MarkMoment, Record, SessionRequest
+from cubeling.app.ui.playback.snapshot import keep_snapshot
+from cubeling.app.ui.playback.status import SessionStatus
+from cubeling.app.ui.web.messages import Said
+from cubeling.app.ui.web.picture import PagePicture, Picture, PictureEncoder, cut_out
+from cubeling.app.ui.web.server import WebServer
+
+REPORT_S = 0.5
+"""How often the pages are told that nothing has changed [s]."""
+
+RETRY_S = 2.0
+"""How often another camera is asked for [s], as long as a recording keeps the present one."""
+
+
+class WebScreen:
+    """A `Screen` on the pages of a server, which its caller closes, as the virtual robot.
+
+    Parameters
+    ----------
+    server
+        Where the pages are.
+    camera_uri
+        Returns the URI of the camera that the pages have now; "" for none.
+    folder
+        Where snapshots go.
+    virtual_robot
+        Shown if there is no real robot.
+    clock
+        Returns the time [s].
+    """
+
+    attended = True
+    closed = False
+
+    def __init__(
+        self,
+        server: WebServer,
+        camera_uri: Callable[[], str],
+        folder: Path,
+        virtual_robot: VirtualRobot | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._server, self._camera_uri, self._folder = server, camera_uri, folder
+        self._virtual_robot, self._clock = virtual_robot, clock
+        self._scenarios = scenario_names()
+        self._encoder = PictureEncoder(server.show)
+        self._layout, self._hint_reader = CardLayout(), HintReader()
+        self._inputs = Inputs()
+        self._mirrored = False
+        self._shown: tuple[Step, RobotView] | None = None
+        self._number = 0
+        self._status = SessionStatus()
+        self._told: dict[str, object] = {}
+        self._told_at = self._asked_at = -float("inf")
+        self._notice: Notice | None = None
+
+    def show(self, step: Step, robot: RobotView) -> Inputs:
+        """Show a step on all pages, and return what players ask of the scenario."""
+        self._notice = None
+        step = self._hint_reader.update(step)
+        self._shown = step, robot
+        wanted = self._server.wanted
+        if step.picture is not None and wanted:
+            self._number += 1
+            page = PagePicture(self._number, *self._server.taken_by(step.frame.encoded))
+            self._encoder.encode(page, self._pictures(wanted))
+        inputs, self._inputs = self._inputs, Inputs()
+        return inputs
+
+    def preview(self, step: Step, robot: RobotView) -> None:
+        """Show a step on the way to another one."""
+        self.show(step, robot)
+
+    def wait(self, notice: Notice | None) -> None:
+        """Tell the pages why no frame comes."""
+        self._notice = notice
+        self._tell()
+
+    def take_requests(self) -> tuple[SessionRequest, ...]:
+        """Return what players ask of the session; another camera, if they have another one."""
+        requests: list[SessionRequest] = []
+        for said in self._server.take_requests():
+            requests += HANDLERS[said.do](self, said)
+        camera, now = self._camera_uri(), self._clock()
+        if camera and camera != self._status.source and now - self._asked_at > RETRY_S:
+            self._asked_at = now
+            requests.append(Choose("camera", camera))
+        return tuple(requests)
+
+    def report(self, status: SessionStatus) -> None:
+        """Tell the pages the state of the session."""
+        self._status = status
+        self._tell()
+
+    def notify(self, words: str) -> None:
+        """Show a notice on the pages for some seconds."""
+        self._server.say(words)
+
+    def close(self) -> None:
+        """Show nothing any more; a second call does nothing."""
+        self._encoder.close()
+
+    def _pictures(self, wanted: frozenset[str]) -> dict[str, Picture]:
+        """Return the last step as the pages want to see it."""
+        assert self._shown is not None
+        step, robot = self._shown
+        assert step.picture is not None
+        pictures: dict[str, Picture] = {}
+        if "cards" in wanted:
+            pictures["cards"] = self._with_cards(step, robot)
+        if "plain" in wanted:
+            pictures["plain"] = self._seen(step.picture)
+        if "cutout" in wanted:
+            pictures["cutout"] = self._seen(cut_out(step.picture, step.frame.image))
+        return pictures
+
+    def _seen(self, picture: Picture) -> Picture:
+        """Return a copy of a picture, perhaps as in a mirror."""
+        return np.asarray(cv2.flip(picture, 1), np.uint8) if self._mirrored else picture.copy()
+
+    def _with_cards(self, step: Step, robot: RobotView) -> Picture:
+        assert step.picture is not None
+        picture = self._seen(step.picture)
+        shown = shown_step(step, 1.0, self._mirrored)
+        return overlay(picture, shown, robot, self._virtual_robot, self._layout)
+
+    def _tell(self) -> None:
+        status, notice, now = self._status, self._notice, self._clock()
+        told: dict[str, object] = {
+            "scenario": status.scenario,
+            "recording": status.recording,
+            "notice": None if notice is None else [notice.title, notice.advice],
+        }
+        recording = status.recording is not None
+        known = {**told, "recording": recording} == {
+            **self._told, "recording": self._told.get("recording") is not None
+        }  # fmt: skip
+        if not known or now - self._told_at >= REPORT_S:
+            self._told, self._told_at = told, now
+            self._server.report(told)
+
+    def _play(self, said: Said) -> tuple[SessionRequest, ...]:
+        if said.name in self._scenarios:
+            self._inputs = replace(self._inputs, scenario=said.name)
+        return ()
+
+    def _again(self, _: Said) -> tuple[SessionRequest, ...]:
+        self._inputs = replace(self._inputs, clear=True)
+        return ()
+
+    def _inside(self, _: Said) -> tuple[SessionRequest, ...]:
+        self._inputs = replace(self._inputs, inside=not self._inputs.inside)
+        return ()
+
+    def _snapshot(self, _: Said) -> tuple[SessionRequest, ...]:
+        if self._shown is not None and self._shown[0].picture is not None:
+            picture = self._with_cards(*self._shown)
+            self.notify(keep_snapshot(self._folder, self._status.scenario, picture, datetime.now()))
+        return ()
+
+    def _mirror(self, said: Said) -> tuple[SessionRequest, ...]:
+        self._mirrored = said.on
+        return ()
+
+
+HANDLERS: dict[str, Callable[[WebScreen, Said], tuple[SessionRequest, ...]]] = {
+    "play": WebScreen._play,
+    "again": WebScreen._again,
+    "inside": WebScreen._inside,
+    "snapshot": WebScreen._snapshot,
+    "mirror": WebScreen._mirror,
+    "record": lambda screen, said: (Record(),),
+    "mark": lambda screen, said: (MarkMoment(),),
+}
+"""What carries out each request of a page."""

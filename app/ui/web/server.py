@@ -1,0 +1,337 @@
+"""The server of the page: it runs on a thread, and nobody who plays waits for it."""
+
+import asyncio
+import re
+import socket
+import ssl
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+from urllib.parse import urlsplit
+
+from aiohttp import web
+from aiohttp.web_protocol import RequestHandler
+
+from cubeling.app.admission import Token
+from cubeling.app.errors import AppError
+from cubeling.app.ui.web.client import PageClient, ShownPicture
+from cubeling.app.ui.web.limits import RateLimit, WebLimits
+from cubeling.app.ui.web.messages import CAMERAS, PLAYERS, Role, Said
+from cubeling.app.ui.web.page import page, page_headers
+from cubeling.tracking import ImageFeed
+
+SOCKET_PATH, PROTOCOL = "/socket", "cubeling"
+"""Where the WebSocket is, and its subprotocol; the token is offered as the other one."""
+
+PAGE_PATHS = ("/", "/view", "/window", "/camera")
+"""One page, which looks at its address."""
+
+CAMERA_QUIET_S = 2.0
+"""A page whose camera sends nothing for so long gives its place up to another one [s]."""
+
+CHECK_EVERY_S = 0.5
+MAX_REQUESTS = 64
+"""What players have asked and nobody has carried out yet; of more, the oldest are forgotten."""
+
+PAGE_NAME = re.compile(r"[a-z0-9]{4,32}")
+CAMERA_NAME = re.compile(r"[a-z0-9]{1,16}(-[a-z]{1,8})?")
+
+
+@dataclass(frozen=True)
+class Listener:
+    """An address at which the server listens."""
+
+    host: str
+    """As "127.0.0.1"."""
+
+    port: int
+    """The TCP port; 0 for any free one."""
+
+    tls: ssl.SSLContext | None = None
+    """The certificate; None for plain HTTP, which browsers let use the camera on localhost only."""
+
+
+class WebServer:
+    """Serves the page and exchanges messages with all who know the token.
+
+    Its methods may be called on any thread. Whoever makes it closes it.
+
+    Parameters
+    ----------
+    listeners
+        Where it listens.
+    token
+        What lets in.
+    welcome
+        What a page is told first, of "scenarios" and "rate" of the sound.
+    limits
+        What clients may use.
+    clock
+        The time [s].
+
+    Raises
+    ------
+    AppError
+        An address or port cannot be used.
+    """
+
+    def __init__(
+        self,
+        listeners: Sequence[Listener],
+        token: Token,
+        welcome: Mapping[str, object] | None = None,
+        limits: WebLimits | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.feed = ImageFeed()
+        """The pictures of the camera."""
+        self.camera = ""
+        """Name of the camera that sends pictures, "ab12-back"; "" before the first."""
+        self.wanted: frozenset[str] = frozenset()
+        """The kinds of pictures that somebody looks at: "cards", "plain", "cutout"."""
+        self.tiles: Sequence[bytes] = ()
+        """The scenarios' pictures, as messages."""
+        self._token, self._limits, self._clock = token, limits or WebLimits(), clock
+        self._welcome = dict(welcome or {})
+        self._status: dict[str, object] = {}
+        self._requests: deque[Said] = deque(maxlen=MAX_REQUESTS)
+        self._clients: dict[str, PageClient] = {}
+        self._strangers: dict[RequestHandler, float] = {}
+        self._owner: PageClient | None = None
+        self._seen = -float("inf")
+        self._tags: deque[tuple[bytes, str, float]] = deque(maxlen=64)
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._sockets = [_listen(each) for each in listeners]
+        self.ports: list[int] = [each.getsockname()[1] for each in self._sockets]
+        """The port of each listener."""
+        self.listeners = tuple(listeners)
+        self.fingerprint = ""
+        """Of the certificate; "" without TLS."""
+        self._loop = asyncio.new_event_loop()
+        self._closing = False
+        self._thread = threading.Thread(target=self._run, name="web", daemon=True)
+        self._thread.start()
+
+    def take_requests(self) -> list[Said]:
+        """Return what players have asked for since the last call."""
+        found = []
+        while self._requests:
+            found.append(self._requests.popleft())
+        return found
+
+    def taken_by(self, jpeg: bytes | None) -> tuple[str, float]:
+        """Return which page has sent a picture, and when it was taken by its clock [s]."""
+        found = (each[1:] for each in tuple(self._tags) if each[0] is jpeg)
+        return next(found, ("", 0.0))
+
+    def show(self, picture: ShownPicture) -> None:
+        """Show a picture on all pages."""
+        self._call(lambda: [each.show(picture) for each in self._clients.values()])
+
+    def sound(self, message: bytes) -> None:
+        """Let all pages hear a binary message of sound."""
+        self._call(lambda: [each.sound(message) for each in self._clients.values()])
+
+    def report(self, status: dict[str, object]) -> None:
+        """Tell all pages the status of the session, and those that come later."""
+        self._status = status
+        self._call(lambda: [each.tell(do="status", **status) for each in self._clients.values()])
+
+    def say(self, words: str) -> None:
+        """Show some words on all pages for some seconds."""
+        self._call(lambda: [each.tell(do="words", words=words) for each in self._clients.values()])
+
+    def close(self) -> None:
+        """Disconnect all; a second call does nothing."""
+        if not self._closing:
+            self._closing = True
+            self._call(lambda: None)
+            self._thread.join(5.0)
+
+    def _call(self, function: Callable[[], object]) -> None:
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(function)
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        try:
+            self._loop.run_until_complete(self._serve())
+        finally:
+            self._loop.close()
+
+    async def _serve(self) -> None:
+        self._server = web.Server(self._answer, access_log=None, keepalive_timeout=2.0)
+        for each, listener in zip(self._sockets, self.listeners, strict=True):
+            self._start(self._accept(each, listener.tls))
+        while not self._closing:
+            await asyncio.sleep(CHECK_EVERY_S / 5)
+            self._check(self._clock())
+        for task in tuple(self._tasks):
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await asyncio.gather(*(each.close("the program ends") for each in self._clients.values()))
+        await self._server.shutdown(1.0)
+        for each in self._sockets:
+            each.close()
+
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
+        task = self._loop.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _accept(self, listening: socket.socket, tls: ssl.SSLContext | None) -> None:
+        """Accept connections, so many a second: others wait in the system's queue."""
+        rate = self._limits.connections_per_s
+        pace = RateLimit(rate, self._limits.burst / rate)
+        while True:
+            while not pace.allows(1.0, self._clock()):
+                await asyncio.sleep(1.0 / rate)
+            try:
+                accepted, _ = await self._loop.sock_accept(listening)
+            except OSError:  # too many files are open, for example
+                await asyncio.sleep(CHECK_EVERY_S)
+                continue
+            accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            self._start(self._connect(accepted, tls))
+
+    async def _connect(self, accepted: socket.socket, tls: ssl.SSLContext | None) -> None:
+        handler = self._server()
+        more = {} if tls is None else {"ssl_handshake_timeout": self._limits.stranger_s}
+        try:
+            await self._loop.connect_accepted_socket(lambda: handler, accepted, ssl=tls, **more)
+        except (OSError, ssl.SSLError, TimeoutError):
+            accepted.close()
+            return
+        if len(self._strangers) >= self._limits.strangers:
+            self._drop(next(iter(self._strangers)))
+        self._strangers[handler] = self._clock()
+
+    def _check(self, now: float) -> None:
+        """Let go whom the limits of time let go."""
+        for handler, since in tuple(self._strangers.items()):
+            if handler.transport is None or now - since > self._limits.stranger_s:
+                self._drop(handler)
+        for client in tuple(self._clients.values()):
+            if now - client.heard > self._limits.idle_s:
+                self._start(client.close("nothing was heard of this page"))
+
+    def _drop(self, handler: RequestHandler) -> None:
+        self._strangers.pop(handler, None)
+        if handler.transport is not None:
+            handler.transport.abort()
+
+    async def _answer(self, request: web.BaseRequest) -> web.StreamResponse:
+        if request.method == "GET" and request.path in PAGE_PATHS:
+            return web.Response(body=page(), content_type="text/html", charset="utf-8",
+                                headers=page_headers())  # fmt: skip
+        if request.method == "GET" and request.path == SOCKET_PATH:
+            return await self._welcome_page(request)
+        return web.Response(status=404, text="there is no such page\n")
+
+    async def _welcome_page(self, request: web.BaseRequest) -> web.StreamResponse:
+        """Open a WebSocket for a page that knows the token; nothing of others is read."""
+        offered = [each.strip() for each in
+                   request.headers.get("Sec-WebSocket-Protocol", "").split(",")]  # fmt: skip
+        name, role = request.query.get("page", ""), request.query.get("role", "")
+        origin = urlsplit(request.headers.get("Origin", "")).netloc
+        known = len(offered) == 2 and self._token.admits(offered[1])
+        if not known or origin not in ("", request.host):
+            return web.Response(status=403, text="the token is missing or wrong\n")
+        if role not in get_args(Role) or not PAGE_NAME.fullmatch(name):
+            return web.Response(status=400, text="this is no page of ours\n")
+        if name not in self._clients and len(self._clients) >= self._limits.clients:
+            return web.Response(status=503, text="there are too many pages\n")
+        opened = web.WebSocketResponse(
+            protocols=(PROTOCOL,),
+            heartbeat=5.0,
+            compress=False,
+            max_msg_size=self._limits.message_bytes,
+        )
+        await opened.prepare(request)
+        self._strangers.pop(request.protocol, None)
+        cutout = request.query.get("background") == "none"
+        kind = "cards" if role in PLAYERS else "cutout" if cutout else "plain"
+        client = PageClient(opened, name, role, kind, self._limits, self._clock)
+        await self._exchange(client)
+        return opened
+
+    async def _exchange(self, client: PageClient) -> None:
+        before = self._clients.pop(client.page, None)
+        self._clients[client.page] = client
+        if before is not None:  # the same page, whose connection was cut
+            if before is self._owner:
+                self._owner = client
+            self._start(before.close("this page is connected anew"))
+        self._count()
+        client.tell(do="welcome", **self._welcome)
+        client.tell(do="status", **self._status)
+        if client.role in PLAYERS:
+            for tile in self.tiles:
+                client.sound(tile)
+        try:
+            why = await client.serve(
+                lambda said: self._hear(client, said),
+                lambda number, taken, jpeg: self._see(client, number, taken, jpeg),
+            )
+        finally:
+            if self._clients.get(client.page) is client:
+                del self._clients[client.page]
+            self._count()
+        if why:
+            await client.close(why)
+
+    def _count(self) -> None:
+        kinds = (each.kind for each in self._clients.values() if each.role != "camera")
+        self.wanted = frozenset(kinds)
+
+    def _hear(self, client: PageClient, said: Said) -> None:
+        if said.do == "tick":
+            client.tell(do="tick", camera=self._place_of(client))
+        elif said.do == "camera":
+            if not CAMERA_NAME.fullmatch(said.name):
+                raise AppError("this is no name of a camera")
+            if client.role in CAMERAS and self._take_place(client):
+                self.camera = said.name
+                self.feed.begin()
+        elif said.do == "stop":
+            self._owner = None if self._owner is client else self._owner
+        elif client.role in PLAYERS:
+            self._requests.append(said)
+
+    def _see(self, client: PageClient, number: int, taken: float, jpeg: bytes) -> None:
+        client.tell(do="got", id=number)
+        if client is self._owner:
+            # The source finds the picture's time by its very bytes.
+            self._tags.append((jpeg, client.page, taken))
+            if not self.feed.push(jpeg, taken):
+                raise AppError("this page sends pictures that are no JPEG of a camera's size")
+            self._seen = self._clock()
+
+    def _take_place(self, client: PageClient) -> bool:
+        """Return whether a page's camera is the camera now: only one is."""
+        if self._owner not in self._clients.values():
+            self._owner = None
+        quiet = self._clock() - self._seen > CAMERA_QUIET_S
+        if self._owner is None or quiet:
+            self._owner, self._seen = client, self._clock()
+        return self._owner is client
+
+    def _place_of(self, client: PageClient) -> str:
+        if client.role not in CAMERAS or self._owner is None:
+            return "free"
+        return "yours" if self._owner is client else "other"
+
+
+def _listen(listener: Listener) -> socket.socket:
+    try:
+        opened = socket.create_server((listener.host, listener.port), backlog=128)
+    except (OSError, OverflowError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise AppError(
+            f"cannot listen at {listener.host}:{listener.port}: {reason}; choose another --port"
+        ) from error
+    opened.setblocking(False)
+    return opened
