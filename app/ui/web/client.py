@@ -31,7 +31,7 @@ class ShownPicture(Protocol):
         ...
 
     def taken(self, page: str) -> float:
-        """Return when its frame was taken, by the clock of the page whose camera took it, else 0."""
+        """Return when its frame was taken, by the clock of a page; 0 if by another camera."""
         ...
 
 
@@ -62,6 +62,7 @@ class PageClient:
         self._picture: ShownPicture | None = None
         self._in_flight: deque[int] = deque()
         self._waiting = asyncio.Event()
+        self._left: asyncio.Future[str] = asyncio.get_running_loop().create_future()
 
     def tell(self, **message: object) -> None:
         """Send a message in JSON."""
@@ -86,16 +87,26 @@ class PageClient:
         `hear` is called with what it says, and `see` with number, time and JPEG of its pictures.
         """
         sending = asyncio.create_task(self._send())
+        receiving = asyncio.create_task(self._receive(hear, see))
         try:
-            why = await self._receive(hear, see)
+            await asyncio.wait(
+                (sending, receiving, self._left), return_when=asyncio.FIRST_COMPLETED
+            )
+            if self._left.done():
+                return self._left.result()
+            return receiving.result() if receiving.done() else ""
         finally:
-            sending.cancel()
-            with contextlib.suppress(asyncio.CancelledError, ConnectionError):
-                await sending
-        return why
+            for task in (sending, receiving):
+                task.cancel()
+            await asyncio.gather(sending, receiving, return_exceptions=True)
+
+    def leave(self, why: str) -> None:
+        """Let `serve` end."""
+        if not self._left.done():
+            self._left.set_result(why)
 
     async def close(self, why: str) -> None:
-        """Disconnect it, and say why."""
+        """Disconnect it, and say why; call it after `serve`."""
         with contextlib.suppress(TimeoutError, ConnectionError, RuntimeError):
             await asyncio.wait_for(
                 self._socket.close(code=4000, message=why.encode()[:120]), LAST_WORDS_S

@@ -19,12 +19,10 @@ from cubeling.app.ui.web.camera import PageCameras
 from cubeling.app.ui.web.messages import TILE, pack
 from cubeling.app.ui.web.picture import encoded
 from cubeling.app.ui.web.screen import WebScreen
-from cubeling.app.ui.web.server import Listener, WebServer
+from cubeling.app.ui.web.server import LOOPBACK, Listener, WebServer
 
 if TYPE_CHECKING:
     import moderngl
-
-LOOPBACK = "127.0.0.1"
 
 TILE_WIDTH_PX = 400
 """Width of a scenario's picture."""

@@ -94,17 +94,28 @@ def encoded(image: Picture) -> bytes:
     return data.tobytes()
 
 
+CUT_OUT_STEP = 6
+"""Change of a pixel from which on something was drawn there, of 255."""
+
+GREY_SPREAD = 0.06
+"""A pixel that is darker in all colours by nearly the same share lies in a shadow."""
+
+
 def cut_out(picture: Picture, camera: Picture) -> Picture:
     """Return what was drawn over the camera's picture, (H, W, 4) BGRA: the rest is transparent.
 
     A shadow, which darkens the camera's picture, becomes black that lets as much through.
     """
-    drawn, seen = picture.astype(np.int16), camera.astype(np.int16)
-    changed = np.abs(drawn - seen).max(axis=2)
+    changed = cv2.absdiff(picture, camera).max(axis=2) > CUT_OUT_STEP
     result = cv2.cvtColor(picture, cv2.COLOR_BGR2BGRA)
-    result[..., 3] = np.where(changed > CUT_OUT_STEP, 255, 0)
+    result[..., 3] = 255 * changed
+    drawn, seen = picture[changed].astype(np.float32), camera[changed].astype(np.float32)
+    shares = drawn / np.maximum(seen, 1.0)
+    light = shares.mean(axis=1)
+    shadow = (light < 1.0) & (np.ptp(shares, axis=1) < GREY_SPREAD)
+    dark = np.zeros((int(shadow.sum()), 4), np.uint8)
+    dark[:, 3] = np.round(255 * (1.0 - light[shadow]))
+    of_changed = result[changed]
+    of_changed[shadow] = dark
+    result[changed] = of_changed
     return np.asarray(result, np.uint8)
-
-
-CUT_OUT_STEP = 6
-"""Change of a pixel from which on something was drawn there, of 255."""

@@ -17,11 +17,14 @@ from aiohttp.web_protocol import RequestHandler
 
 from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
-from cubeling.app.ui.web.client import PageClient, ShownPicture
+from cubeling.app.ui.web.client import LAST_WORDS_S, PageClient, ShownPicture
 from cubeling.app.ui.web.limits import RateLimit, WebLimits
 from cubeling.app.ui.web.messages import CAMERAS, PLAYERS, Role, Said
 from cubeling.app.ui.web.page import page, page_headers
 from cubeling.tracking import ImageFeed
+
+LOOPBACK = "127.0.0.1"
+"""The address of this computer that no other one reaches."""
 
 SOCKET_PATH, PROTOCOL = "/socket", "cubeling"
 """Where the WebSocket is, and its subprotocol; the token is offered as the other one."""
@@ -115,6 +118,11 @@ class WebServer:
         self._thread = threading.Thread(target=self._run, name="web", daemon=True)
         self._thread.start()
 
+    @property
+    def clients(self) -> tuple[str, ...]:
+        """The pages that are connected now."""
+        return tuple(self._clients)
+
     def take_requests(self) -> list[Said]:
         """Return what players have asked for since the last call."""
         found = []
@@ -172,7 +180,11 @@ class WebServer:
         for task in tuple(self._tasks):
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        await asyncio.gather(*(each.close("the program ends") for each in self._clients.values()))
+        for client in self._clients.values():
+            client.leave("the program ends")
+        end = self._clock() + LAST_WORDS_S
+        while self._clients and self._clock() < end:
+            await asyncio.sleep(0.01)
         await self._server.shutdown(1.0)
         for each in self._sockets:
             each.close()
@@ -216,7 +228,7 @@ class WebServer:
                 self._drop(handler)
         for client in tuple(self._clients.values()):
             if now - client.heard > self._limits.idle_s:
-                self._start(client.close("nothing was heard of this page"))
+                client.leave("nothing was heard of this page")
 
     def _drop(self, handler: RequestHandler) -> None:
         self._strangers.pop(handler, None)
@@ -264,7 +276,7 @@ class WebServer:
         if before is not None:  # the same page, whose connection was cut
             if before is self._owner:
                 self._owner = client
-            self._start(before.close("this page is connected anew"))
+            before.leave("this page is connected anew")
         self._count()
         client.tell(do="welcome", **self._welcome)
         client.tell(do="status", **self._status)

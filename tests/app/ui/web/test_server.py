@@ -1,0 +1,323 @@
+"""The page and its server: who is let in, what is exchanged, and clients that misbehave."""
+
+import asyncio
+import re
+import time
+from contextlib import asynccontextmanager, closing
+from dataclasses import dataclass
+
+import aiohttp
+import cv2
+import numpy as np
+import pytest
+
+from cubeling.app.admission import Token
+from cubeling.app.ui.web.limits import WebLimits
+from cubeling.app.ui.web.messages import PICTURE, pack, read_said, unpack
+from cubeling.app.ui.web.page import MAX_PAGE_BYTES, page, page_headers
+from cubeling.app.ui.web.server import LOOPBACK, Listener, WebServer
+
+WAIT_S = 20.0
+TOKEN = Token("open-sesame")
+JPEG = cv2.imencode(".jpg", np.full((48, 64, 3), 90, np.uint8))[1].tobytes()
+
+
+@dataclass
+class Drawn:
+    """A picture for pages."""
+
+    number: int
+    size: int = 1000
+
+    def data(self, kind):
+        return bytes(self.size) if kind == "cards" else None
+
+    def taken(self, page):
+        return 0.0
+
+
+class Client:
+    """A page without a browser."""
+
+    def __init__(self, socket):
+        self.socket = socket
+
+    async def say(self, **message):
+        await self.socket.send_json(message)
+
+    async def see(self, number, jpeg, taken=1.0):
+        await self.socket.send_bytes(pack(PICTURE, number, taken, jpeg))
+
+    async def told(self, do):
+        """Return the next message of a kind, and skip others; no picture may come before it."""
+        while True:
+            message = await asyncio.wait_for(self.socket.receive(), WAIT_S)
+            if message.type == aiohttp.WSMsgType.TEXT and message.json()["do"] == do:
+                return message.json()
+            assert message.type == aiohttp.WSMsgType.TEXT, message
+
+    async def picture(self):
+        while True:
+            message = await asyncio.wait_for(self.socket.receive(), WAIT_S)
+            if message.type == aiohttp.WSMsgType.BINARY:
+                return unpack(message.data)[1]
+
+    async def why_closed(self):
+        while not self.socket.closed:
+            await asyncio.wait_for(self.socket.receive(), WAIT_S)
+        return self.socket.close_code
+
+
+@asynccontextmanager
+async def page_of(server, name="page", role="play", token=TOKEN.text, headers=None):
+    url = f"http://{LOOPBACK}:{server.ports[0]}/socket?page={name}&role={role}"
+    async with aiohttp.ClientSession() as session:
+        async with session.ws_connect(
+            url, protocols=("cubeling", token), headers=headers, autoping=True
+        ) as socket:
+            client = Client(socket)
+            await client.told("welcome")
+            yield client
+
+
+def serve(use, limits=None):
+    """Run a coroutine function with a server."""
+    with closing(WebServer([Listener(LOOPBACK, 0)], TOKEN, {"rate": 48000}, limits)) as server:
+        asyncio.run(use(server))
+
+
+async def until(condition):
+    end = time.monotonic() + WAIT_S
+    while not condition():
+        assert time.monotonic() < end
+        await asyncio.sleep(0.005)
+
+
+def test_the_page_is_small_and_loads_nothing_from_elsewhere():
+    text = page().decode()
+    assert len(page()) <= MAX_PAGE_BYTES
+    assert not re.search(r"(https?:)?//[a-z0-9]", text.replace("https:// or http://localhost", "")
+                         .replace("https:// o http://localhost", ""))  # fmt: skip
+    assert "default-src 'none'" in page_headers()["Content-Security-Policy"]
+
+
+def test_every_word_of_the_page_is_there_in_both_languages():
+    text = page().decode()
+    spanish, english = text[text.index("const T = es ?") :].split("} : {")[:2]
+    keys = [
+        set(re.findall(r"^\s*(\w+):|, (\w+): [\[\"]", part.partition("};")[0], re.M))
+        for part in (spanish, english)
+    ]
+    names = [{name for pair in each for name in pair if name} for each in keys]
+    assert names[0] - {"about", "follow", "sketch", "companion", "reach"} == names[1] - {"about"}
+
+
+def test_only_who_knows_the_token_is_let_in():
+    async def use(server):
+        for token, headers in (
+            ("wrong-token", None),
+            ("none", None),
+            (TOKEN.text, {"Origin": "http://elsewhere.example"}),
+        ):
+            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+                async with page_of(server, token=token, headers=headers):
+                    pass
+            assert refused.value.status == 403
+        async with aiohttp.ClientSession() as session:
+            root = f"http://{LOOPBACK}:{server.ports[0]}"
+            async with session.get(f"{root}/") as answer:
+                assert answer.status == 200
+                assert "frame-ancestors 'none'" in answer.headers["Content-Security-Policy"]
+            for path in ("/etc/passwd", "/page.js", "/socket", "/../server.py"):
+                async with session.get(root + path) as answer:
+                    assert answer.status in (403, 404)
+
+    serve(use)
+
+
+def test_a_picture_arrives_with_its_very_bytes_and_is_acknowledged():
+    async def use(server):
+        async with page_of(server) as phone:
+            await phone.say(do="camera", name="ab12-back")
+            await phone.see(7, JPEG, 12.5)
+            assert (await phone.told("got"))["id"] == 7
+            await until(lambda: server.feed.number == 1)
+            _, jpeg, _ = server.feed.next(0, 0.0)
+            assert jpeg == JPEG
+            assert server.camera == "ab12-back"
+            assert server.feed.size == (64, 48)
+            assert server.taken_by(jpeg) == ("page", 12.5)
+            assert server.taken_by(bytes(JPEG[:1] + JPEG[1:])) == ("", 0.0), "by identity"
+
+    serve(use)
+
+
+def test_one_phone_is_the_camera_and_its_place_is_free_when_it_leaves():
+    async def use(server):
+        async with page_of(server, "second") as second:
+            async with page_of(server, "first") as first:
+                await first.say(do="camera", name="first")
+                await first.see(1, JPEG)
+                await first.told("got")
+                await second.say(do="camera", name="second")
+                await second.say(do="tick")
+                assert (await second.told("tick"))["camera"] == "other"
+                await second.see(1, JPEG)
+                await second.told("got")
+                assert server.camera == "first"
+                assert server.feed.number == 1
+            await until(lambda: len(server.clients) == 1)
+            await second.say(do="camera", name="second")
+            await second.say(do="tick")
+            assert (await second.told("tick"))["camera"] == "yours"
+            assert server.camera == "second"
+
+    serve(use)
+
+
+def test_a_page_that_is_connected_anew_keeps_its_place():
+    async def use(server):
+        async with page_of(server) as before:
+            await before.say(do="camera", name="ab12")
+            await before.see(1, JPEG)
+            await before.told("got")
+            async with page_of(server) as again:
+                assert await before.why_closed() == 4000
+                await again.say(do="tick")
+                assert (await again.told("tick"))["camera"] == "yours"
+                await again.see(2, JPEG)
+                await again.told("got")
+                assert server.feed.number == 2
+
+    serve(use)
+
+
+def test_players_ask_and_viewers_cannot():
+    async def use(server):
+        async with page_of(server, "view", "view") as view, page_of(server, "play") as play:
+            await view.say(do="snapshot")
+            await view.say(do="tick")
+            await view.told("tick")
+            await play.say(do="play", name="follow")
+            await play.say(do="tick")
+            await play.told("tick")
+            assert server.take_requests() == [read_said('{"do":"play","name":"follow"}')]
+            assert server.take_requests() == []
+            assert server.wanted == {"plain", "cards"}
+
+    serve(use)
+
+
+def test_at_most_two_pictures_are_on_their_way_and_the_newest_is_next():
+    async def use(server):
+        async with page_of(server) as phone:
+            for number in (1, 2):
+                server.show(Drawn(number))
+                assert await phone.picture() == number
+            for number in range(3, 50):
+                server.show(Drawn(number))
+            await phone.say(do="tick")
+            await phone.told("tick")  # and no picture came before it
+            await phone.say(do="shown", id=1)
+            assert await phone.picture() == 49
+
+    serve(use)
+
+
+def test_a_page_that_reads_nothing_holds_two_pictures_and_stalls_nobody():
+    async def use(server):
+        async with page_of(server, "slow") as slow, page_of(server, "quick") as quick:
+            for number in range(1, 41):
+                server.show(Drawn(number, size=300_000))
+                assert await quick.picture() == number
+                await quick.say(do="shown", id=number)
+            server.say("done")
+            seen = []
+            while len(seen) < 2:
+                seen.append(await slow.picture())
+            assert seen[0] == 1
+            assert len(seen) == 2
+            assert (await slow.told("words"))["words"] == "done"
+
+    serve(use)
+
+
+HUGE = JPEG.replace(b"\x00\x30\x00\x40", b"\xff\xdc\xff\xdc")
+"""The same picture with a header that claims 65,500 x 65,500 pixels."""
+
+
+@pytest.mark.parametrize(
+    ("what", "messages"),
+    [
+        ("a header of 65,500 pixels", [pack(PICTURE, 1, 0.0, HUGE)]),
+        ("no JPEG", [pack(PICTURE, 1, 0.0, b"GIF89a" * 9)]),
+        ("half a head", [b"\x01\x00"]),
+        ("a time that is none", [pack(PICTURE, 1, float("nan"), JPEG)]),
+        ("no JSON", ["{"]),
+        ("another message", ['{"do":"format"}']),
+        ("a name with a path", ['{"do":"camera","name":"../x"}']),
+        ("a long text", ["x" * 5000]),
+        ("a flood of texts", ['{"do":"tick"}'] * 2000),
+        ("too large a message", [bytes(5 << 20)]),
+    ],
+)
+def test_who_misbehaves_is_disconnected_and_others_play_on(what, messages):
+    assert HUGE != JPEG
+
+    async def use(server):
+        async with page_of(server, "good", "window") as good:
+            async with page_of(server, "evil") as evil:
+                await evil.say(do="camera", name="evil")
+                await evil.say(do="tick")
+                await evil.told("tick")
+                try:
+                    for message in messages:
+                        if isinstance(message, str):
+                            await evil.socket.send_str(message)
+                        else:
+                            await evil.socket.send_bytes(message)
+                except (ConnectionError, aiohttp.ClientError):
+                    pass  # it was disconnected meanwhile
+                assert await evil.why_closed() in (4000, 1009, 1006), what
+            await until(lambda: [*server.clients] == ["good"])
+            assert server.feed.number == 0
+            await good.say(do="tick")
+            await good.told("tick")
+
+    serve(use)
+
+
+def test_strangers_who_ask_nothing_are_let_go():
+    async def use(server):
+        opened = [await asyncio.open_connection(LOOPBACK, server.ports[0]) for _ in range(12)]
+        for number, (_, writer) in enumerate(opened):
+            writer.write(b"GET / HT" if number % 2 else b"")
+        for reader, writer in opened:
+            with pytest.raises((ConnectionError, asyncio.IncompleteReadError)):
+                await asyncio.wait_for(reader.readexactly(1), WAIT_S)
+            writer.close()
+        async with page_of(server):
+            pass
+
+    serve(use, WebLimits(stranger_s=0.2, strangers=8, connections_per_s=200.0))
+
+
+def test_there_is_room_for_so_many_pages():
+    async def use(server):
+        async with page_of(server, "first"), page_of(server, "second"):
+            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+                async with page_of(server, "third"):
+                    pass
+            assert refused.value.status == 503
+            async with page_of(server, "second"):
+                pass  # again
+
+    serve(use, WebLimits(clients=2))
+
+
+def test_a_page_that_says_nothing_is_let_go():
+    async def use(server):
+        async with page_of(server) as phone:
+            assert await phone.why_closed() == 4000
+
+    serve(use, WebLimits(idle_s=0.2))
