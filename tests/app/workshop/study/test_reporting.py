@@ -283,6 +283,8 @@ def test_a_participant_plays_and_answers_and_goes_on_later(
         ("run", "vleo", "-o", "s", "--simulated", "2"),
         ("run", "missing.toml", "-o", "s", "--simulated", "2"),
         ("run", "vleo-and-pleo", "-o", "s", "--simulated", "2", "--pilot"),
+        ("run", "vleo-and-pleo", "-o", "/dev/null", "--simulated", "2"),
+        ("run", "vleo-and-pleo", "-o", "/proc/study", "--simulated", "2"),
         ("report", "nothing"),
         ("new", "no/x.toml"),
         ("new", "x.toml", "--like", "y"),
