@@ -124,6 +124,7 @@ class _WireDecoder:
         self.delays: list[float] = []
         self.events: list[RobotEvent] = []
         self._asked: dict[int, tuple[str, str]] = {}
+        self._answered: set[int] = set()
         self._readers = {"tx": FrameReader(), "rx": FrameReader()}
         self._commands: dict[int, tuple[float, tuple[float, float]]] = {}
         self._acknowledged: set[int] = set()
@@ -200,12 +201,14 @@ class _WireDecoder:
         """Note a command, but not its repetitions."""
         if self._asked.get(command.number) != (what, name):
             self._asked[command.number] = what, name
+            self._answered.discard(command.number)  # numbers begin again after a reconnection
             self.events.append(RobotEvent(time, what, emotion, name, command.number))
 
     def _answer(self, answer: m.Ack, time: float) -> None:
-        """Note an answer to a command."""
+        """Note the answer to a command, but not to its repetitions."""
         asked, name = self._asked.get(answer.number, ("", ""))
-        if asked:
+        if asked and answer.number not in self._answered:
+            self._answered.add(answer.number)
             taken = "acknowledged" if asked == "commanded" else "taken"
             reason = m.REFUSALS.get(answer.result, "")
             what = taken if answer.result == m.RESULT_TAKEN else "refused"

@@ -97,6 +97,36 @@ def test_a_robot_that_was_away_still_has_what_it_had_taken(tmp_path, talking_ses
     np.testing.assert_allclose(acknowledged, [[0.5, 0.25], [np.nan, np.nan]], atol=1e-4)
 
 
+def test_what_a_robot_was_asked_took_and_refused_is_told_once(tmp_path, talking_session):
+    path = tmp_path / "asked.mcap"
+    said = [
+        *SAID[:7],
+        (0.2, "rx", m.Name(m.ITEM_MOTION, 4, "wave")),
+        (0.3, "tx", m.Play(2, m.ITEM_MOTION, 4)),
+        (0.32, "tx", m.Play(2, m.ITEM_MOTION, 4)),  # repeated, as no answer came
+        (0.33, "rx", m.Ack(2, m.RESULT_TAKEN)),
+        (0.34, "rx", m.Ack(2, m.RESULT_TAKEN)),
+        (0.4, "tx", m.Play(3, m.ITEM_SOUND, 1)),
+        (0.41, "rx", m.Ack(3, m.RESULT_BUSY)),
+    ]
+    with open_source(str(talking_session)) as source, Recorder(path, {"scenario": "x"}) as recorder:
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
+        recorder.write(playground.step(next(iter(source))))
+        for time, direction, content in said:
+            recorder.wire(direction, encode_frame(pack(content, 9)), time)
+    told = [(e.what, e.name, e.number) for e in read_robot_traces(path).events]
+    assert told == [
+        ("commanded", "", 1),
+        ("acknowledged", "", 1),
+        ("observed", "", None),
+        ("asked", "wave", 2),
+        ("taken", "wave", 2),
+        ("asked", "1", 3),
+        ("refused", "1", 3),
+    ]
+    assert read_robot_traces(path).events[-1].reason.startswith("it is busy")
+
+
 def test_a_robot_that_is_silent_shows_nothing_that_is_known(tmp_path, talking_session):
     path = tmp_path / "silent.mcap"
     said = [*SAID[:7], (0.9, "rx", state(0.0, 0.0))]
