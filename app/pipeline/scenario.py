@@ -246,6 +246,10 @@ def check_actions(scenario: Scenario, character: str, known: Collection[str]) ->
             raise AppError(f"{place}: {character} cannot '{action}'; its actions: {listed}")
 
 
+PERSON = "human"
+"""The bundled character that has all gestures."""
+
+
 @runtime_checkable
 class GesturingScenario(Protocol):
     """A scenario that knows from the beginning which gestures its texts will ask for."""
@@ -255,7 +259,9 @@ class GesturingScenario(Protocol):
 
 
 def check_gestures(scenario: Scenario, character: Character) -> None:
-    """Refuse a character that lacks a gesture which the scenario's texts will ask for.
+    """Refuse a gesture in the scenario's texts that neither the character nor a person has.
+
+    One that only its body lacks, such as a wave without arms, is left out when it comes.
 
     Raises
     ------
@@ -263,9 +269,11 @@ def check_gestures(scenario: Scenario, character: Character) -> None:
         With the place that names the first such gesture.
     """
     asked = scenario.gestures if isinstance(scenario, GesturingScenario) else {}
-    known = meanings_of(character, asked)
+    missing = asked.keys() - meanings_of(character, asked).keys()
+    if missing:
+        missing -= meanings_of(Character.load(PERSON), missing).keys()
     for gesture, place in asked.items():
-        if gesture not in known:
+        if gesture in missing:
             raise AppError(
                 f"{place}: {character.name} has no gesture '{gesture}'; "
                 "cubeling gesture library lists them"
