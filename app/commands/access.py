@@ -14,7 +14,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.ui.literal_text import literal_text
 
 if TYPE_CHECKING:
-    from cubeling.app.running.players import PlayerPublisher
+    from cubeling.app.running.players import CastPublisher
 
 BROKER_GROUP = "Other computers, over an MQTT broker"
 """Heading of these options in a help."""
@@ -59,7 +59,7 @@ Ca = Annotated[
 @contextmanager
 def publisher(
     url: str | None, name: str | None, site: str, password_file: Path | None, ca: Path | None
-) -> Iterator[PlayerPublisher | None]:
+) -> Iterator[CastPublisher | None]:
     """Connect a player if the options ask for one, and disconnect it at the end.
 
     Raises RobotError or AppError if an option is wrong or missing, or the broker refuses.
@@ -69,11 +69,11 @@ def publisher(
         yield None
         return
     from cubeling.app.running.network import Network
-    from cubeling.app.running.players import PlayerPublisher
+    from cubeling.app.running.players import CastPublisher
     from cubeling.robot.network import Credentials
 
     with Network(url, site, Credentials(None, password_file, ca)) as network:
-        yield PlayerPublisher(network, name, on_problem=report_problem)
+        yield CastPublisher(network, name, on_problem=report_problem)
 
 
 def check_publisher(url: str | None, name: str | None) -> None:

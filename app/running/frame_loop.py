@@ -108,7 +108,7 @@ class FrameLoop:
         self.robot = view = session.robot_view()
         self._feel(step)
         if session.player is not None:
-            session.player.publish(step.command, step.emotion)
+            session.player.publish(step.cast)
         lap("robot")
         if session.recording is not None:
             session.recording.write(step, inputs)

@@ -26,7 +26,7 @@ from cubeling.bad_input import BadInputError
 from cubeling.tracking import CubeModel, FrameSource, open_source
 
 if TYPE_CHECKING:
-    from cubeling.app.running.players import PlayerPublisher
+    from cubeling.app.running.players import CastPublisher
     from cubeling.app.running.recording import SessionRecording
     from cubeling.app.sound import SessionSound
 
@@ -83,8 +83,8 @@ class OpenedSession:
     clock: SessionClock
     """The time that the robot lives by."""
 
-    player: "PlayerPublisher | None"
-    """Publishes the character's actions and emotions, or None."""
+    player: "CastPublisher | None"
+    """Publishes the actions and emotions of the cast, or None."""
 
     pace: Pace | None
     """Plays a recording at the speed at which it was recorded; None for every frame at once."""

@@ -53,7 +53,7 @@ from cubeling.tracking import (
 if TYPE_CHECKING:
     import moderngl
 
-    from cubeling.app.running.players import PlayerPublisher
+    from cubeling.app.running.players import CastPublisher
     from cubeling.app.sound import Mixer, SessionSound, SoundOutput
 
 
@@ -67,7 +67,7 @@ def open_session(
     typed: Iterable[str] | None = None,
     until_over: bool = False,
     front_end: FrontEnd | None = None,
-    player: "PlayerPublisher | None" = None,
+    player: "CastPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
 ) -> Iterator[OpenedSession]:
@@ -342,7 +342,7 @@ def is_seekable(source: FrameSource) -> bool:
 
 
 def _pace(
-    options: SessionOptions, source: FrameSource, player: "PlayerPublisher | None"
+    options: SessionOptions, source: FrameSource, player: "CastPublisher | None"
 ) -> Pace | None:
     """Return the pace of recorded frames: that of who watches them or lives with them."""
     # A real robot and other players live in real time.

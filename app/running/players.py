@@ -1,13 +1,16 @@
-"""The character of a session as a player: publishes its actions and emotions on the network."""
+"""The characters of a session as players: publishes actions and emotions on the network."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.pipeline.step import Performance
+from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.app.running.network import Network
 from cubeling.characters import CharacterCommand
-from cubeling.robot.network import MAX_AGE_S, BusClient, Player
+from cubeling.robot import RobotError
+from cubeling.robot.network import FURTHER, MAX_AGE_S, BusClient, Player
 
 WEIGHT_STEP = 0.2
 """An action is published again when its weight has changed by so much."""
@@ -84,3 +87,47 @@ class PlayerPublisher:
         """Publish an emotion if it has changed."""
         with self.client.lock:
             self.client.endpoint.feel(target.emotion)
+
+
+class CastPublisher:
+    """Publishes what each of a cast does: the first as the player, the others as PLAYER:NAME.
+
+    The parameters are those of `PlayerPublisher`.
+    """
+
+    def __init__(
+        self,
+        network: Network,
+        name: str,
+        max_age: float = MAX_AGE_S,
+        on_problem: Callable[[str], None] = lambda line: None,
+    ) -> None:
+        self.lead = PlayerPublisher(network, name, max_age, on_problem)
+        """Publishes the first character."""
+        self._network, self._name, self._max_age = network, name, max_age
+        self._on_problem = on_problem
+        self._others: dict[str, PlayerPublisher | None] = {}
+
+    def of(self, name: str) -> PlayerPublisher | None:
+        """Return what publishes one of the cast, by its name as `Lines` have it.
+
+        None for one whose name cannot be one in the network, which is reported once.
+        """
+        if name == LEAD:
+            return self.lead
+        if name not in self._others:
+            self._others[name] = None
+            try:
+                self._others[name] = PlayerPublisher(
+                    self._network, f"{self._name}{FURTHER}{name}", self._max_age, self._on_problem
+                )
+            except RobotError as error:
+                self._on_problem(str(error))
+        return self._others[name]
+
+    def publish(self, cast: Sequence[Performance]) -> None:
+        """Publish what the cast does in a frame, the first one first."""
+        for number, seen in enumerate(cast):
+            publisher = self.of(seen.name if number else LEAD)
+            if publisher is not None:
+                publisher.publish(seen.command, seen.emotion)

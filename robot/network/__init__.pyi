@@ -23,6 +23,7 @@ from cubeling.robot.network.roster import (
 from cubeling.robot.network.topics import (
     ANY_NAME as ANY_NAME,
     DEFAULT_SITE as DEFAULT_SITE,
+    FURTHER as FURTHER,
     Member as Member,
     Pattern as Pattern,
     Role as Role,

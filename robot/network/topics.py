@@ -20,6 +20,9 @@ MAX_NAME_BYTES = 32
 ANY_NAME = "*"
 """In a pattern: every site, or every member of a site."""
 
+FURTHER = ":"
+"""Between the names of a player and of a further character of its cast: "ann:vleo"."""
+
 DEFAULT_SITE = "home"
 """The site of those who name none."""
 
@@ -51,6 +54,11 @@ class Member:
     def place(self) -> str:
         """Site and name: "hall/ann"."""
         return f"{self.site}/{self.name}"
+
+    @property
+    def is_further(self) -> bool:
+        """Whether it is a further character of a player, as "ann:vleo"."""
+        return FURTHER in self.name
 
     def __str__(self) -> str:
         return f"the {self.role} {self.name!r} of the site {self.site!r}"
@@ -90,8 +98,16 @@ class Pattern:
         return found
 
     def matches(self, member: Member) -> bool:
-        """Whether it includes a member."""
-        return self.site in (ANY_NAME, member.site) and self.name in (ANY_NAME, member.name)
+        """Whether it includes a member; "*" is for the first character of each player only.
+
+        >>> ann, vleo = (Member("hall", "player", name) for name in ("ann", "ann:vleo"))
+        >>> [Pattern("hall", name).matches(vleo) for name in ("*", "ann", "ann:vleo")]
+        [False, False, True]
+        >>> Pattern("hall", "*").matches(ann)
+        True
+        """
+        any_name = self.name == ANY_NAME and not member.is_further
+        return self.site in (ANY_NAME, member.site) and (any_name or self.name == member.name)
 
     def filter(self, role: Role, kind: str) -> str:
         """Return the topic filter for a kind of messages.
@@ -125,9 +141,17 @@ def member_of(topic: str) -> tuple[Member, str] | None:
 
 
 def is_name(text: str) -> bool:
-    """Whether this is a valid name: letters and digits of any script, and - _ after the first."""
-    inner = text.replace("-", "x").replace("_", "x")
-    return inner.isalnum() and text[0].isalnum() and len(text.encode()) <= MAX_NAME_BYTES
+    """Whether this is a valid name: letters and digits of any script, and - _ after the first.
+
+    That of a further character is two of them.
+
+    >>> [is_name(text) for text in ("ann", "ann:vleo_2", "ann:", ":vleo", "a:b:c")]
+    [True, True, False, False, False]
+    """
+    parts = text.split(FURTHER, 1)
+    plain = (each.replace("-", "x").replace("_", "x").isalnum() for each in parts)
+    begins = all(each[:1].isalnum() for each in parts)
+    return all(plain) and begins and len(text.encode()) <= MAX_NAME_BYTES
 
 
 def check_name(text: str, what: str) -> str:

@@ -27,7 +27,7 @@ from cubeling.app.ui.playback.status import EndCard
 from cubeling.tracking import FrameSource, Intrinsics
 
 if TYPE_CHECKING:
-    from cubeling.app.running.players import PlayerPublisher
+    from cubeling.app.running.players import CastPublisher
 
 LINE_INTERVAL_S = 5.0
 """Time between two lines of progress outside a terminal [s]."""
@@ -40,7 +40,7 @@ def play_session(
     source: FrameSource | None = None,
     replayed: SessionFile | None = None,
     front_end: FrontEnd | None = None,
-    player: "PlayerPublisher | None" = None,
+    player: "CastPublisher | None" = None,
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
     typed: Iterable[str] | None = None,

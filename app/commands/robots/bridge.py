@@ -49,7 +49,8 @@ def bridge(
         list[str] | None,
         typer.Option(
             help="Which players to follow: PLAYER, SITE/PLAYER or SITE/*; by default all of your "
-            "site. Repeatable."
+            "site. PLAYER:NAME is a further character of a player's cast, and ROBOT=PLAYER is for "
+            "one of the robots only. Repeatable."
         ),
     ] = None,
     site: Site = DEFAULT_SITE,

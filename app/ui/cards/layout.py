@@ -293,10 +293,11 @@ class LabelLayout:
         placed: dict[str, Rect] = {}
         for name, figure in figures.items():
             others = [*(rect for rect in taken if rect != figure), *placed.values()]
+            seen = not are_apart(figure, [(0.0, 0.0, picture_width, PICTURE_HEIGHT)], 0.0)
             free = {
                 side: box
                 for side, box in enumerate(_label_sides(figure, sizes[name], picture_width))
-                if _is_inside(box, picture_width) and are_apart(box, others, 0.0)
+                if _is_inside(box, picture_width) and are_apart(box, others, 0.0) and seen
             }
             box = free.get(self._side(name, free, now))
             if box is not None:

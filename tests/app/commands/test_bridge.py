@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,11 @@ from cubeling.affect import Emotion
 from cubeling.app.commands.robots.bridge import EventPrinter
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import EmotionTarget
-from cubeling.app.running.bridge import Bridge, RecordedPlayer
+from cubeling.app.running.bridge import Bridge, RecordedPlayer, patterns_of
 from cubeling.app.running.network import Network
-from cubeling.app.running.players import PlayerPublisher
+from cubeling.app.running.players import CastPublisher, PlayerPublisher
+from cubeling.app.session import Recorder
+from cubeling.app.session.encoding import encode
 from cubeling.app.ui.roster import table
 from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent
 from cubeling.robot.network import Member
@@ -92,13 +95,69 @@ def test_a_recorded_session_drives_robots_without_a_broker(companion):
 
 def test_a_recorded_session_plays_in_its_own_time(companion):
     with Network() as network:
-        line = PlayerPublisher(network, "ann")
+        line = CastPublisher(network, "ann")
         player = RecordedPlayer(line, companion)
         made = []
         for second in range(60):
             player.advance(100.0 + second)
-            made.append(line.client.endpoint.counts["made"])
+            made.append(line.lead.client.endpoint.counts["made"])
         assert (made[2], made[5], made[-1]) == (0, 1, 6)
+
+
+def test_each_of_a_cast_is_published_by_its_name_and_each_robot_follows_whom_it_is_told(tmp_path):
+    """The robot that follows all shows the first character, as if there were no others."""
+    path = tmp_path / "cast.mcap"
+    calm, glad = (
+        Emotion(valence, 0.0, word) for valence, word in ((0.0, "neutral"), (0.8, "happy"))
+    )
+    with Recorder(path, {"scenario": "companion"}) as recorder:
+        for topic, emotion, what in (
+            ("/character/command", calm, command("kiss")),
+            ("/cast/vleo/command", glad, command("shout")),
+        ):
+            recorder._json(topic, partial(encode, what), 0.0)
+            feels = EmotionTarget(emotion, 0.0)
+            named = "/robot/emotion" if topic.startswith("/char") else "/cast/vleo/emotion"
+            recorder._json(named, partial(encode, feels), 0.0)
+        recorder._steps = 1  # a session without a frame would be left out
+    robots = {"rex": "sim", "tim": "sim:cubeling?seed=2"}
+    with (
+        Network() as network,
+        Bridge(network, robots, {"ann": path}, follow=["tim=ann:vleo"]) as bridge,
+    ):
+        members = bridge.roster.endpoint.members
+        bridge.advance(0.0)
+        bridge.advance(1.0)
+
+        def shown(name: str) -> Any:
+            entry = members.get(Member("home", "robot", name))
+            state = None if entry is None else entry.messages.get("state")
+            return None if state is None else state.player
+
+        soon(lambda: (shown("rex"), shown("tim")) == ("home/ann", "home/ann:vleo"))
+        feels = members[Member("home", "player", "ann:vleo")].messages["emotion"]
+        assert feels.label == "happy"
+
+
+def test_a_robot_follows_those_that_are_named_for_it_else_those_for_all():
+    follow = ["ann", "tim=ann:vleo", "tim=south/*"]
+    found = patterns_of(follow, ["rex", "tim"], "hall")
+    assert [[str(each) for each in found[name]] for name in ("rex", "tim")] == [
+        ["hall/ann"],
+        ["hall/ann:vleo", "south/*"],
+    ]
+    assert [str(each) for each in patterns_of([], ["rex"], "hall")["rex"]] == ["hall/*"]
+    with pytest.raises(AppError, match="no robot of this bridge is called 'max'"):
+        patterns_of(["max=ann"], ["rex"], "hall")
+
+
+def test_a_character_whose_name_is_too_long_for_the_network_is_told_once():
+    said: list[str] = []
+    with Network() as network:
+        line = CastPublisher(network, "ann", on_problem=said.append)
+        assert line.of("x" * 40) is line.of("x" * 40) is None
+        assert line.of("vleo") is line.of("vleo") is not None
+    assert len(said) == 1
 
 
 def wrong_inputs() -> dict[str, tuple[list[str], str]]:
@@ -113,6 +172,9 @@ def wrong_inputs() -> dict[str, tuple[list[str], str]]:
         "no robot": (["bridge", "--mqtt", "mqtt://127.0.0.1:1", "--robot", "a=sim:cat"], "sim:cat"),
         "no player": (
             ["replay", str(COMPANION), "--no-pictures", "--mqtt", "mqtt://h"], "--player NAME",
+        ),
+        "no such robot": (
+            ["bridge", "--robot", "a=sim", "--play", f"x={COMPANION}", "--follow", "b=x"], "'b'",
         ),
         "no mqtt": (["replay", str(COMPANION), "--no-pictures", "--player", "ann"], "--mqtt URL"),
     }  # fmt: skip
