@@ -21,13 +21,13 @@ from cubeling.app.commands.play.play_options import (
     PersonalityOption,
     QualityOption,
     RecordOption,
-    RobotOption,
+    RobotsOption,
     codecs_of,
     describe,
 )
 from cubeling.app.commands.play.preference_options import DEFAULT_FILE, GivenPreferences
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.choices import cast_of
+from cubeling.app.pipeline.choices import cast_of, robots_of
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario, scenario_names
 
@@ -81,7 +81,7 @@ def serve(
     language: LanguageOption = None,
     intrinsics: IntrinsicsOption = None,
     quality: QualityOption = AUTO_QUALITY,
-    robot: RobotOption = "sim",
+    robots: RobotsOption = None,
     record: RecordOption = None,
     codec: CodecOption = "auto",
     folder: FolderOption = None,
@@ -115,6 +115,7 @@ def serve(
     from cubeling.app.session import SessionOptions
 
     first, others = cast_of(cast, character)
+    (robot, _), robot_names = robots_of(robots or (), 1)
     record_codec, _ = codecs_of(codec, record, None)
     options = SessionOptions(
         scenario=scenario,
@@ -127,6 +128,7 @@ def serve(
         intrinsics=intrinsics,
         quality=checked_quality(quality),
         robot=robot,
+        robot_names=robot_names,
         record=record,
         codec=record_codec,
         folder=folder,

@@ -71,13 +71,15 @@ class Client:
 @asynccontextmanager
 async def page_of(server, name="page", role="play", token=TOKEN.text, headers=None):
     url = f"http://{LOOPBACK}:{server.ports[0]}/socket?page={name}&role={role}"
-    async with aiohttp.ClientSession() as session:
-        async with session.ws_connect(
+    async with (
+        aiohttp.ClientSession() as session,
+        session.ws_connect(
             url, protocols=("cubeling", token), headers=headers, autoping=True
-        ) as socket:
-            client = Client(socket)
-            await client.told("welcome")
-            yield client
+        ) as socket,
+    ):
+        client = Client(socket)
+        await client.told("welcome")
+        yield client
 
 
 def serve(use, limits=None):
