@@ -219,6 +219,14 @@ class NamingScenario(Protocol):
 
 
 @runtime_checkable
+class FurnishedScenario(Protocol):
+    """A scenario that puts things on the table."""
+
+    kept_free: tuple[tuple[float, float], ...]
+    """Where they stand, (x, z) [m]: none of the others waits there."""
+
+
+@runtime_checkable
 class CastDirector(Protocol):
     """A scenario that decides for others of the cast, too."""
 

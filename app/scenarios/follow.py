@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
-from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.pipeline.table.situation import PLAYER_POSITION, Situation
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.pursuit import Pursuit
@@ -24,9 +24,6 @@ from cubeling.characters import (
 from cubeling.tracking import CubeControls, CubeModel
 
 Point = NDArray[np.float64]
-
-PLAYER_POSITION = np.array([0.0, 2.0])
-"""A point far towards the camera, (x, z) on the table [m]: where the player sits."""
 
 
 class Follow:

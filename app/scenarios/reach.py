@@ -12,7 +12,7 @@ from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.reach_behaviour import ReachingBody, ReachScene
 from cubeling.app.scenarios.reach_catching import ARRIVED_M, HARD, Catching, Prospect
-from cubeling.app.scenarios.reach_gifts import Gifts
+from cubeling.app.scenarios.reach_gifts import HOMES, Gifts
 from cubeling.app.scenarios.reach_hints import Facts, facts_of, hint_of
 from cubeling.app.scenarios.reach_places import (
     Point,
@@ -81,6 +81,7 @@ class Reach:
     character = "human"
     personality = "lively"
     start = RootDelta(-0.14, 0.03, 0.0)
+    kept_free = tuple(HOMES.values())
     has_intensity = False
     adjustable = ("personality",)
 

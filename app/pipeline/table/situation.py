@@ -9,6 +9,9 @@ from cubeling.app.pipeline.table.props import PosedBody
 from cubeling.characters import PosedCharacter
 from cubeling.tracking import CubeControls, CubeState
 
+PLAYER_POSITION = np.array([0.0, 2.0])
+"""A point far towards the camera, (x, z) on the table [m]: where the player sits."""
+
 
 @dataclass(frozen=True)
 class Situation:

@@ -6,8 +6,7 @@ import numpy as np
 
 from cubeling.affect import Personality
 from cubeling.app.pipeline.scenario import Inputs, Outcome, Scenario, ScenarioSettings
-from cubeling.app.pipeline.table.situation import Situation
-from cubeling.app.scenarios.follow import PLAYER_POSITION
+from cubeling.app.pipeline.table.situation import PLAYER_POSITION, Situation
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.rules.file import Rule, RuleSet, event_of, read_rules

@@ -1,16 +1,19 @@
 """Several characters on the table: names, places, glances, and room for one another."""
 
+import math
+
 import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.cast.further_members import FURTHER_PLACES_M
+from cubeling.app.pipeline.cast.further_members import CLEARANCE_M, FURTHER_PLACES_M, waiting_places
 from cubeling.app.pipeline.choices import MAX_CAST, cast_of, distinct_names
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.attention import Attention, Company
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
+from cubeling.app.scenarios.reach_gifts import HOMES
 from cubeling.app.session import SessionOptions, session_info
 from cubeling.characters import Character, CharacterCommand
 from cubeling.tracking import CubeModel, CubeState, Frame
@@ -61,8 +64,24 @@ def test_each_name_is_there_once_and_fits_into_a_topic():
     assert names == ("human", "human_2", "Zoë-1", "human_3", "-")
 
 
-def test_there_is_a_place_for_everyone():
-    assert len(FURTHER_PLACES_M) == MAX_CAST - 1
+@pytest.mark.parametrize("things", [(), tuple(HOMES.values())])
+def test_there_is_a_place_for_everyone_that_no_thing_has(things):
+    places = waiting_places(things)
+    assert len(set(places)) == MAX_CAST - 1
+    for place in places:
+        assert all(math.dist(place, each) > CLEARANCE_M for each in things)
+        assert all(math.dist(place, each) > 0.12 for each in places if each != place)
+    assert waiting_places() == FURTHER_PLACES_M
+
+
+def test_who_waits_stands_turned_as_it_stays(table):
+    """Nobody turns at the beginning: all face the player from the first frame on."""
+    steps = [step for _, step in table(("vleo", "vleo"), scenario="reach", frames=60)]
+    for first, last in zip(steps[0].others, steps[-1].others, strict=True):
+        assert last.command.activity == "idle"
+        ahead = [each.posed.table_from_character[:3, 2] for each in (first, last)]
+        cosine = ahead[0] @ ahead[1] / np.linalg.norm(ahead[0]) / np.linalg.norm(ahead[1])
+        assert cosine > math.cos(math.radians(8.0))
 
 
 def test_others_live_on_the_table_and_the_lead_is_as_it_is_alone(table):
