@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.pipeline.cube_window import Interior
 from cubeling.app.pipeline.step import Rect
-from cubeling.characters import Character, PosedCharacter
+from cubeling.app.pipeline.table.props import PosedBody
 from cubeling.tracking import CubeState
 
 HAND_EDGES = 0.6
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 def picture_regions(
     cubes: Sequence[tuple[CubeState, float]],
     table: Array | None,
-    cast: Sequence[tuple[Character, PosedCharacter]],
+    cast: Sequence[PosedBody],
     interior: Interior | None,
     matrix: Array,
 ) -> tuple[tuple[Rect, ...], tuple[Rect | None, ...]]:
@@ -38,10 +38,10 @@ def picture_regions(
             regions.append(_cube_region(state.camera_from_cube, edge, matrix))
     inside = interior is not None and interior.left_on_table <= 0.0
     figures = tuple(
-        _character_region(table, character, posed, matrix)
-        if table is not None and posed.visible and not (inside and number == 0)
+        _region(table @ body.posed.table_from_character, body.bounds, matrix)
+        if table is not None and body.posed.visible and not (inside and number == 0)
         else None
-        for number, (character, posed) in enumerate(cast)
+        for number, body in enumerate(cast)
     )
     return tuple(region for region in regions if region is not None), figures
 
@@ -50,13 +50,6 @@ def _cube_region(camera_from_cube: Array, edge: float, matrix: Array) -> Rect | 
     """Return where a cube and the hand that holds it are seen [px]; None behind the camera."""
     reach = edge * (0.5 + HAND_EDGES)
     return _region(camera_from_cube, np.array([[-reach] * 3, [reach] * 3]), matrix)
-
-
-def _character_region(
-    camera_from_table: Array, character: Character, posed: PosedCharacter, matrix: Array
-) -> Rect | None:
-    """Return where a character is seen [px], by the box of its rest pose; None if it is not."""
-    return _region(camera_from_table @ posed.table_from_character, character.bounds, matrix)
 
 
 def _region(camera_from_box: Array, bounds: Array, matrix: Array) -> Rect | None:

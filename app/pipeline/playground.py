@@ -331,7 +331,7 @@ class Playground:
         cubes, figures = picture_regions(
             [(state, self.cube.edge), *((each.state, each.edge) for each in played)],
             controls.camera_from_table,
-            [(each.character, each.posed) for each in cast.members if each.posed],
+            [each.body for each in cast.members if each.body is not None],
             interior,
             self.sight.lens.matrix,
         )

@@ -61,6 +61,9 @@ class BodyParts:
     stand: float
     """How far from a thing it stands that it takes [m on the table]."""
 
+    margins: Point
+    """How far the body reaches beyond its joints at rest, lowest and highest corner (2, 3) [m]."""
+
     head: int | None = None
     """Joint of its head; None for a character without one."""
 
@@ -88,7 +91,13 @@ class BodyParts:
         if joint is not None:
             chest = rest[joint, :3, 3]
         stand = _stand_distance(character, scale)
-        return BodyParts(hands, chest, touching, stand, anatomy.joint("head"))
+        margins = character.bounds - _box(rest[:, :3, 3])
+        return BodyParts(hands, chest, touching, stand, margins, anatomy.joint("head"))
+
+
+def _box(points: Point) -> Point:
+    """Return the lowest and highest corner, (2, 3), of points (n, 3)."""
+    return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
 def _stand_distance(character: Character, scale: float) -> float:
@@ -137,6 +146,11 @@ class PosedBody:
         return self.chest if head is None else np.asarray(self._table_from_joints[head, :3, 3])
 
     @property
+    def bounds(self) -> Point:
+        """A box around it as it stands now, lowest and highest corner (2, 3), in its frame [m]."""
+        return _box(self._joints[:, :3, 3]) + self.parts.margins
+
+    @property
     def has_hands(self) -> bool:
         """Whether it has a hand to reach with."""
         return bool(self.parts.hands)
@@ -183,7 +197,11 @@ class PosedBody:
         return np.asarray(points @ placed[:3, :3].T + placed[:3, 3])
 
     @cached_property
+    def _joints(self) -> Point:
+        """Placements of all joints in the character's frame, (joints, 4, 4)."""
+        return self.posed.pose.globals(self.character.skeleton)
+
+    @cached_property
     def _table_from_joints(self) -> Point:
-        """Placements of all joints, (joints, 4, 4)."""
-        joints = self.posed.pose.globals(self.character.skeleton)
-        return np.asarray(self.posed.table_from_character @ joints)
+        """The same on the table."""
+        return np.asarray(self.posed.table_from_character @ self._joints)

@@ -285,7 +285,7 @@ def dialogue(tmp_path):
 
     def update(controls, heard=None):
         seen = Situation(heard=heard)
-        return [each.update(controls, seen, Inputs()) for each in cast]
+        return [each.update(controls, seen, Inputs()) for each in cast if each is not None]
 
     return update
 
