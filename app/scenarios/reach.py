@@ -6,8 +6,8 @@ from cubeling.affect import Personality
 from cubeling.app.pipeline.registry import SUMMARIES
 from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.pipeline.table.props import PosedBody
-from cubeling.app.pipeline.table.situation import Situation
-from cubeling.app.scenarios.follow import PLAYER_POSITION, gait
+from cubeling.app.pipeline.table.situation import PLAYER_POSITION, Situation
+from cubeling.app.scenarios.follow import gait
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.reach_behaviour import ReachingBody, ReachScene
