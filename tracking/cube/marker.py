@@ -1,5 +1,7 @@
 """The cells of a marker, and its black shape as outlines."""
 
+from functools import cache
+
 import cv2
 import numpy as np
 
@@ -15,6 +17,18 @@ def marker_cells(dictionary: str, marker_id: int) -> Flags:
     pattern = aruco_dictionary(dictionary)
     picture = cv2.aruco.generateImageMarker(pattern, marker_id, pattern.markerSize + 2)
     return np.asarray(picture) < 128
+
+
+@cache
+def turned_markers(dictionary: str) -> Flags:
+    """Return which cells of each marker of a dictionary are black, turned four ways.
+
+    (N, 4, cells), with the cells of `marker_cells` in one row, the marker as it is first.
+    """
+    count = len(aruco_dictionary(dictionary).bytesList)
+    cells = [marker_cells(dictionary, marker_id) for marker_id in range(count)]
+    turned = [[np.rot90(each, turns).ravel() for turns in range(4)] for each in cells]
+    return np.asarray(turned, np.bool_)
 
 
 def cell_size(cube: CubeModel) -> float:

@@ -148,7 +148,7 @@ class EdgeSearch:
 
 
 def _prove(found: EdgeRefinement, reading: CellReading) -> bool:
-    if found.sharpness_ratio < MIN_SHARPNESS_RATIO:
+    if found.sharpness_ratio < MIN_SHARPNESS_RATIO or reading.others:
         return False
     if found.support <= MIN_EDGE_SUPPORT:
         return reading.best >= MIN_READ_AGREEMENT
