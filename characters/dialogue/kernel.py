@@ -292,11 +292,13 @@ class Dialogue:
         state = self.state
         choices = [fill(text, state.profile) for text in texts.of(state.language)]
         key = line, state.language
-        unused = state.unused.get(key) or tuple(range(len(choices)))
+        # Actions of one line share what is unused, and one of them may have more texts.
+        unused = [number for number in state.unused.get(key, ()) if number < len(choices)]
+        unused = unused or list(range(len(choices)))
         last = state.recent[-1:] or ("",)
         fresh = [number for number in unused if choices[number] != last[0]]
         if not fresh:
-            fresh = [n for n, text in enumerate(choices) if text != last[0]] or list(unused)
+            fresh = [n for n, text in enumerate(choices) if text != last[0]] or unused
         number = fresh[self._draw(len(fresh))]
         state.unused[key] = tuple(each for each in unused if each != number)
         state.recent = (*state.recent, choices[number])[-2:]

@@ -183,6 +183,14 @@ def test_a_text_is_never_said_three_times_running(tmp_path: Path) -> None:
     assert not any(a == b == c for a, b, c in zip(answers, answers[1:], answers[2:], strict=False))
 
 
+def test_actions_of_one_line_may_have_different_numbers_of_texts(tmp_path: Path) -> None:
+    three, one = "".join(f"<text>{n} times</text>" for n in range(3)), "<text>Oh!</text>"
+    both = f'{three}</action><action type="say">{one}'
+    talk = dialogue(tmp_path, unit("u", HELLO, both, **CYCLIC))
+    for number in range(30):
+        assert said(talk, "hello", float(number)).endswith("times Oh!")
+
+
 def test_every_text_comes_before_one_comes_again(tmp_path: Path) -> None:
     texts = "".join(f"<text>{number} times</text>" for number in range(5))
     talk = dialogue(tmp_path, unit("u", HELLO, texts, **CYCLIC), seed=3)
