@@ -19,6 +19,7 @@ from cubeling.characters.dialogue.patterns import Heard, fill
 from cubeling.characters.dialogue.script import DialogueScript, Localized, Unit, UnitTransition
 from cubeling.characters.dialogue.vocabulary import (
     CORE_VOCABULARY,
+    MAX_LINE_CHARS,
     DialogueMoment,
     Slots,
     TurnDraft,
@@ -150,7 +151,8 @@ class Dialogue:
 
     def remember_said(self, text: str) -> None:
         """Remember what was heard of the last reply: all of it, or as far as it came."""
-        self.state.profile[SAID_SLOT] = text
+        # A reply may hold what was said, again and again.
+        self.state.profile[SAID_SLOT] = text[:MAX_LINE_CHARS]
 
     def update(
         self,

@@ -8,6 +8,7 @@ import pytest
 
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.characters.dialogue.kernel import MAX_STEPS, Dialogue, heard_of
+from cubeling.characters.dialogue.vocabulary import MAX_LINE_CHARS
 from cubeling.characters.speech.speech import Utterance, Word
 from tests.characters.dialogue.scripts import dialogue, said, unit
 
@@ -181,6 +182,14 @@ def test_a_text_is_never_said_three_times_running(tmp_path: Path) -> None:
     answers = [said(talk, "hello", float(now)) for now in range(9)]
     assert "" not in answers
     assert not any(a == b == c for a, b, c in zip(answers, answers[1:], answers[2:], strict=False))
+
+
+def test_a_reply_that_repeats_itself_does_not_grow_for_ever(tmp_path: Path) -> None:
+    texts = "<text>I said: {said}</text><text>Once more: {said}</text>"
+    talk = dialogue(tmp_path, unit("u", "again", texts, **CYCLIC))
+    for number in range(100):
+        talk.remember_said(said(talk, "again", float(number)))
+    assert len(talk.state.profile["said"]) <= MAX_LINE_CHARS
 
 
 def test_actions_of_one_line_may_have_different_numbers_of_texts(tmp_path: Path) -> None:
