@@ -58,6 +58,10 @@ RUN_CLIPS = {
 WALK_RUN_SPEEDS = (2.75, 3.25)
 """Speeds between which walking and running are mixed."""
 
+GAIT_CHANGE_S = 0.17
+"""How long it takes at least from walking to running, and back [s]: sooner, the knee of a foot that
+stands in the one and swings in the other is thrown there (`python -m tests.bench.takeovers`)."""
+
 # Ground speeds as multiples of the recorded walk or run: slowest and fastest of each.
 _SLOW_WALK, _FAST_WALK, _SLOW_RUN, _FAST_RUN = 0.5, 1.3, 0.8, 1.25
 # Slow walking has shorter and slower steps (Grieve and Gear, "The relationships between length of
@@ -116,6 +120,20 @@ class Gaits:
     def speed(self, pace: float) -> float:
         """Return the Speed for a ground speed [m/s]: the inverse of `pace`."""
         return interpolate(pace, self._paces, self._speeds)
+
+    @staticmethod
+    def next_speed(used: float, wanted: float, elapsed: float) -> float:
+        """Return the Speed a time [s] after `used` on the way to another one.
+
+        It is what is wanted, unless that is too soon for a change between walking and running.
+        """
+        low, high = WALK_RUN_SPEEDS
+        most = elapsed * (high - low) / GAIT_CHANGE_S
+        if used < wanted and wanted > low and used < high:
+            return min(wanted, max(used, low) + most)
+        if used > wanted and used > low and wanted < high:
+            return max(wanted, min(used, high) - most)
+        return wanted
 
     @cached_property
     def first_phase(self) -> float:

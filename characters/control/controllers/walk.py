@@ -184,8 +184,9 @@ class WalkController:
         if self._machine.state != "move":
             # From standing it sets off in the right direction; the transition smooths it.
             used = SteeringOutput(0.0, course.angular, course.stride)
+        speed = low_pass(used.speed, course.speed, elapsed, SPEED_LAG_S)
         return SteeringOutput(
-            low_pass(used.speed, course.speed, elapsed, SPEED_LAG_S),
+            self.gaits.next_speed(used.speed, speed, elapsed),
             low_pass(used.angular, course.angular, elapsed, ANGULAR_LAG_S),
             low_pass(used.stride, course.stride, elapsed, STRIDE_LAG_S),
         )
