@@ -3,6 +3,7 @@
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -56,6 +57,22 @@ def damped_spring(
     slope = speed + rate * offset
     decay = math.exp(-rate * elapsed)
     return target + (offset + slope * elapsed) * decay, (speed - rate * slope * elapsed) * decay
+
+
+@dataclass
+class SpringValue:
+    """A number that follows a target by `damped_spring`: it sets off and arrives gently."""
+
+    value: float
+    """What it is now."""
+
+    speed: float = 0.0
+    """[1/s]."""
+
+    def follow(self, target: float, elapsed: float, lag: float) -> float:
+        """Advance by a time [s] towards a target, and return the value."""
+        self.value, self.speed = damped_spring(self.value, self.speed, target, elapsed, lag)
+        return self.value
 
 
 def hermite(a: _Value, slope_a: _Value, b: _Value, slope_b: _Value, u: float) -> _Value:

@@ -12,6 +12,7 @@ from cubeling.characters.motion.motion import Motion, RootDelta, integrate_trave
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.masks import Mask, check_mask
 from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.skeleton.way_round import WayRound
 
 
 @dataclass(frozen=True)
@@ -114,17 +115,23 @@ class AdditiveLayer(_Layer):
         return self.over.sample(0.0) if self.reference is None else self.reference
 
 
-def lay_over(pose: Pose, joints: NDArray[np.intp], turns: Array, weight: float) -> Pose:
+def lay_over(
+    pose: Pose,
+    joints: NDArray[np.intp],
+    turns: Array,
+    weight: float,
+    way: WayRound | None = None,
+) -> Pose:
     """Return a pose with some joints, (n,), turned to the rotations `turns`, (n, 4), by a weight.
 
-    The way is the shorter one; a weight a little over 1 overshoots. `turns` need not be normalised,
-    and are overwritten: what lays gestures over a body does so in every frame.
+    The way is the shorter one, or goes on from the frame before by `way`; a weight a little over 1
+    overshoots. `turns` need not be normalised, and are overwritten: what lays gestures over a body
+    does so in every frame.
     """
+    turns /= np.sqrt(np.vecdot(turns, turns))[:, None]
     if weight != 1.0:
         below = pose.rotations.take(joints, 0)
-        turns *= np.copysign(weight, np.vecdot(turns, below))[:, None]
-        turns += below * (1.0 - weight)
-    turns /= np.sqrt(np.vecdot(turns, turns))[:, None]
+        turns = (way or WayRound()).mix(below, turns, weight)
     local = pose.rotations.copy()
     local[joints] = turns
     return Pose(pose.translations, local, pose.scales, pose.morphs)

@@ -22,6 +22,7 @@ from cubeling.characters.motion.layers import lay_over
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Array, Pose
+from cubeling.characters.skeleton.way_round import WayRound
 from cubeling.characters.smoothing import smoothstep
 
 MIN_HOLD_S = 0.02
@@ -140,7 +141,8 @@ class GestureMotion:
         self.times = times
         self._posture, self._joints, self._turns_of = posture, joints, turns_of
         self._stops, self._style = stops, style
-        self._moved, self._count = joints.all, len(joints.arms)
+        self.moved, self._count = joints.all, len(joints.arms)
+        """The joints that it turns."""
         self._start = joints.rest.copy()
         if start is not None:
             self._start[: self._count] = start
@@ -173,22 +175,25 @@ class GestureMotion:
         """Return no movement over the ground."""
         return RootDelta()
 
-    def over(self, pose: Pose, now: float, weight: float) -> Pose:
-        """Return a pose with the gesture at a time [s] of its own laid over it by a weight, 0…1."""
+    def over(self, pose: Pose, now: float, weight: float, way: WayRound | None = None) -> Pose:
+        """Return a pose with the gesture at a time [s] of its own laid over it by a weight, 0…1.
+
+        Part of the way, it goes on by `way` from the frame before.
+        """
         if weight <= 0.0:
             return pose
-        now, beyond, way = self._ease(min(max(now, self.times.start), self.times.end))
+        now, beyond, swung = self._ease(min(max(now, self.times.start), self.times.end))
         place = min(max(bisect_right(self._rows, now) - 1, 0), len(self._rows) - 2)
         segment = self._segment(place)
         turns = segment.at((now - self._rows[place]) / segment.length)
         if beyond > 0.0:
-            turns += beyond * self._way(*way)
+            turns += beyond * self._way(*swung)
         if place == 0 or now > self.times.relax:
             self._join(turns, pose, now)
         if self._count < len(turns):
             trunk = pose.rotations[self._joints.trunk]
             turns[self._count :] = rotations.multiply(trunk, turns[self._count :])
-        return lay_over(pose, self._moved, turns, weight)
+        return lay_over(pose, self.moved, turns, weight, way)
 
     def _join(self, turns: Array, pose: Pose, now: float) -> None:
         """Let arms go on with what they do below, at first, and take it up again at the end."""

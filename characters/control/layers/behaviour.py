@@ -30,6 +30,10 @@ MAX_TURN_RAD = math.radians(50.0)
 TURN_LAG_S = 0.5
 """Lag with which it turns [s]."""
 
+STANCE_BLEND_S = 1.0
+"""In which time a body leaves a stance for another, or is upright again [s]: as long as a posture
+of BML usually takes to come."""
+
 NEGLIGIBLE_RAD = 1e-4
 """Turn that cannot be seen [rad]."""
 
@@ -42,7 +46,7 @@ class StanceLayer:
 
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._joints = StanceJoints(character.skeleton, character.anatomy)
-        self._values = PlannedValues(StanceJoints.VALUES)
+        self._values = PlannedValues(StanceJoints.VALUES, STANCE_BLEND_S)
         self._turns = ((0.0, 0.0), (0.0, 0.0))
         self._turning = False
         self._share = QUADRUPED_SHARE if character.anatomy.kind == "quadruped" else 1.0

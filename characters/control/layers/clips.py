@@ -1,7 +1,7 @@
 """The layer that plays clips over their joints: `CharacterCommand.behaviour.clips`."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,8 @@ from cubeling.characters.motion.motion import Motion
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.masks import subtree
 from cubeling.characters.skeleton.pose import Pose
-from cubeling.characters.smoothing import low_pass
+from cubeling.characters.skeleton.way_round import WayRound
+from cubeling.characters.smoothing import SpringValue
 from cubeling.characters.synthesis.gestures.library import gesture_joints
 
 FADE = FadeCurve(0.25, 0.3)
@@ -29,8 +30,9 @@ LEAVE_S = 0.3
 HANDS_FREE = {"idle": 1.0, "walk": 0.8, "run": 0.3}
 """Share of clips that is shown while a character does something; none in its actions."""
 
-FREE_LAG_S = 0.2
-"""Lag with which a body becomes free, and is taken [s]."""
+FREE_LAG_S = 0.4
+"""Lag with which hands become free, and are taken [s]: what is laid over an action that takes over
+may not go faster than the action."""
 
 MIN_MOVED_RAD = np.deg2rad(3.0)
 """A joint that a clip turns less than this is not one that it is for [rad]."""
@@ -48,6 +50,7 @@ class _Playing:
     motion: Motion
     joints: NDArray[np.intp]
     present: float = 1.0
+    way: WayRound = field(default_factory=WayRound)
 
 
 class ClipLayer:
@@ -56,23 +59,23 @@ class ClipLayer:
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._character = character
         self._playing: list[_Playing] = []
-        self._free = 1.0
+        self._free = SpringValue(1.0)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with its clips."""
         behaviour, now = context.command.behaviour, context.command.timestamp
         free = HANDS_FREE.get(context.frame.state, 0.0)
-        self._free = low_pass(self._free, free, context.elapsed, FREE_LAG_S)
+        free = self._free.follow(free, context.elapsed, FREE_LAG_S)
         asked = () if behaviour is None else behaviour.clips
         if not asked and not self._playing:
             return pose
         self._follow(asked, context.elapsed)
         for each in self._playing:
             own, length = now - each.intent.times.start, each.motion.duration
-            weight = each.present * self._free * FADE.at(own, length)
+            weight = each.present * free * FADE.at(own, length)
             if 0.0 < own < length and weight > 0.0:
                 turns = each.motion.sample(own).rotations.take(each.joints, 0)
-                pose = lay_over(pose, each.joints, turns, weight)
+                pose = lay_over(pose, each.joints, turns, weight, each.way)
         return pose
 
     def _follow(self, asked: Sequence[ClipIntent], elapsed: float) -> None:

@@ -8,13 +8,13 @@ from cubeling.characters.control.layers.layer import FrameContext
 from cubeling.characters.control.layers.sitting_up import STANDING_REST
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.pose import Pose
-from cubeling.characters.smoothing import low_pass
+from cubeling.characters.smoothing import SpringValue
 
 if TYPE_CHECKING:
     from cubeling.characters.control.layers.gesture_playback import GesturePlayback
 
 FADE_S = 0.3
-"""How long a gesture takes to go that is left out before its end, or to join in late [s]."""
+"""How long a gesture takes to join in late, or to go that others cover [s]."""
 
 ON_TIME_S = 0.05
 """A gesture that is first heard of so long after its start need not join in: a frame [s]."""
@@ -22,8 +22,9 @@ ON_TIME_S = 0.05
 HANDS_FREE = {"idle": 1.0, "walk": 1.0, "run": 0.5}
 """Share of gestures that is shown while a character does something; none in its actions."""
 
-FREE_LAG_S = 0.15
-"""Lag with which hands become free, and are taken [s]."""
+FREE_LAG_S = 0.4
+"""Lag with which hands become free, and are taken [s]: what is laid over an action that takes over
+may not go faster than the action."""
 
 SHOWN_AT_ONCE = 4
 """Gestures that are performed at once, those that began last: they cover the others, and each costs
@@ -36,18 +37,18 @@ class GestureLayer:
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._character = character
         self._active: list[GesturePlayback] = []
-        self._free = 1.0
+        self._free = SpringValue(1.0)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with its gestures."""
         asked, now = context.command.behaviour, context.command.timestamp
-        self._free = low_pass(self._free, self._hands_free(context), context.elapsed, FREE_LAG_S)
+        free = self._free.follow(self._hands_free(context), context.elapsed, FREE_LAG_S)
         if not self._active and (asked is None or not asked.gestures):
             return pose
         going = self._follow(asked or BehaviourIntent(), now)
-        self._share_out(going, now, context.elapsed / FADE_S)
+        self._share_out(going, now, context.elapsed)
         for each in self._active:
-            pose = each.over(pose, now, self._free)
+            pose = each.over(pose, now, free)
         return pose
 
     def _hands_free(self, context: FrameContext) -> float:
@@ -70,15 +71,17 @@ class GestureLayer:
         self._active = [*known, *going]
         return set(going)
 
-    def _share_out(self, going: "set[GesturePlayback]", now: float, step: float) -> None:
+    def _share_out(self, going: "set[GesturePlayback]", now: float, elapsed: float) -> None:
         """Let join in what is asked for and not covered, and let go the rest."""
         under_way = [each for each in self._active if each.is_under_way(now)]
         covered = set(under_way[:-SHOWN_AT_ONCE])
         for each in self._active:
             if each in covered:
-                each.cover(step)
+                each.cover(elapsed / FADE_S)
+            elif each in going and not each.called_off:
+                each.present = min(each.present + elapsed / FADE_S, 1.0)
             else:
-                each.present = min(each.present + (step if each in going else -step), 1.0)
+                each.give_up(now, elapsed)
         self._active = [
             each
             for each in self._active

@@ -27,10 +27,15 @@ from cubeling.characters.motion.inertialization import OffsetDecay
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.skeleton.scalar_quaternions import Vector, add, length, subtract
+from cubeling.characters.skeleton.way_round import WayRound
 from cubeling.characters.smoothing import low_pass
 
-FADE_S = 0.3
-"""How long a hand takes to go that is not asked for any more [s]."""
+LEAVE_S = 0.8
+"""How long a hand takes to go that is not asked for any more [s], times its weight: as long as it
+usually comes, and sits down."""
+
+BLEND_S = 0.3
+"""In which time its weight goes over from one plan to another [s]."""
 
 JOIN_S = 0.3
 """How long it takes at least to join in late, or to go to another place than before [s]."""
@@ -40,6 +45,9 @@ RELAX_S = 0.6
 
 MAX_TARGET_SPEED = 3.0
 """Speed of a place that a hand follows, in body heights a second: what is faster is a jump."""
+
+MAX_ARM_SPEED_RAD = 25.0
+"""Speed of a joint of an arm that reaches [rad/s]: what is faster is a jump."""
 
 CLEARANCE = 0.012
 """Distance of a palm from the body's surface ÷ the body's height."""
@@ -75,7 +83,10 @@ class ReachingHand:
 
     _joined: tuple[float, float] = (0.0, 0.0)
     _left: tuple[float, float] | None = None
-    _weights: PlannedValues = field(default_factory=lambda: PlannedValues(1, FADE_S))
+    way: WayRound = field(default_factory=WayRound)
+    """By which way its arm goes there."""
+
+    _weights: PlannedValues = field(default_factory=lambda: PlannedValues(1, BLEND_S))
 
     def follow(self, intent: ReachIntent, place: Vector, now: float, step: float) -> None:
         """Go on with an intent, or begin it; its place moves at most `step` [m] without a jump."""
@@ -105,14 +116,14 @@ class ReachingHand:
             plan, lambda time: np.array([self._wanted_weight(times, time)]), now
         )
         self.weight = min(max(float(asked[0]), 0.0), 1.0)
-        if left is not None and now >= left[0] + FADE_S:
+        if left is not None and now >= left[0] + LEAVE_S * left[1]:
             self.weight, self.intent, self._left = 0.0, None, None
-            self._weights = PlannedValues(1, FADE_S)
+            self._weights = PlannedValues(1, BLEND_S)
 
     def _wanted_weight(self, times: Times, now: float) -> float:
         if self._left is not None:
             since, weight = self._left
-            return weight * (1.0 - ease((now - since) / FADE_S, "gonio"))
+            return weight * (1.0 - ease((now - since) / (LEAVE_S * weight + 1e-9), "gonio"))
         since, before = self._joined
         begin, ready = max(times.start, since), times.ready
         if since > times.start:  # it joins in late, or comes from another place
@@ -178,8 +189,9 @@ class ReachLayer:
         self._four_legs = character.anatomy.kind == "quadruped"
         self._hands = {side: ReachingHand() for side in self._body.arms}
         self._shown: NDArray[np.float64] | None = None
+        self._reached: NDArray[np.float64] | None = None
         self._decay: OffsetDecay | None = None
-        self._switched = 0.0
+        self._switched = self._jumped = 0.0
         if not self._hands:
             return
         standing = StandingBody.of(character)
@@ -253,7 +265,8 @@ class ReachLayer:
     def _move_hands(self, pose: Pose, context: FrameContext) -> Pose:
         hands = {side: hand for side, hand in self._hands.items() if hand.weight > 0.0}
         if not hands and self._decay is None:
-            self._shown = self._settled = self._shown_tree = self._tree_decay = None
+            self._shown = self._reached = None
+            self._settled = self._shown_tree = self._tree_decay = None
             return pose
         share = context.rest if self._four_legs else 1.0
         targets = {
@@ -262,6 +275,7 @@ class ReachLayer:
                 hand.intent.kind,
                 palm=context.direction_in_character(hand.intent.palm),
                 weight=hand.weight * share,
+                way=hand.way,
             )
             for side, hand in hands.items()
             if hand.intent is not None
@@ -276,7 +290,7 @@ class ReachLayer:
             reached = self._body.reach(pose, **targets, style=style)
         else:
             reached = placed.bring(self._settle(placed, style, context, join), style)
-        return self._without_jumps(reached, join, now)
+        return self._without_jumps(reached, join, now, context.elapsed)
 
     def _settle(
         self, placed: PlacedBody, style: ReachStyle, context: FrameContext, join: float
@@ -308,24 +322,31 @@ class ReachLayer:
             self._power = low_pass(self._power, wanted.power, elapsed, lag)
         return ReachStyle(self._openness, self._power)
 
-    def _without_jumps(self, pose: Pose, join: float, now: float) -> Pose:
-        """Return a pose that goes on from the one shown before, if a hand is asked to jump.
+    def _without_jumps(self, pose: Pose, join: float, now: float, elapsed: float) -> Pose:
+        """Return a pose that goes on from the one shown before, if a hand or its solver jumps.
 
-        `join` is how long it takes to the new place [s]; 0 without a jump.
+        `join` is how long it takes to the new place [s]; 0 if none is asked for.
         """
         joints = self._joints
+        reached = pose.rotations.take(joints, 0)
+        if self._reached is not None and not join:
+            cosines = np.abs(np.vecdot(reached, self._reached))
+            most = min(0.5 * MAX_ARM_SPEED_RAD * elapsed, 0.5 * math.pi)
+            if cosines.min(initial=1.0) < math.cos(most):
+                join = JOIN_S
+        self._reached = reached
         if join and self._shown is not None:
             offset = rotations.to_rotation_vector(
-                rotations.multiply(self._shown, rotations.conjugate(pose.rotations[joints]))
+                rotations.multiply(self._shown, rotations.conjugate(reached))
             )
-            self._decay = OffsetDecay(offset, np.zeros_like(offset), join)
+            self._decay, self._jumped = OffsetDecay(offset, np.zeros_like(offset), join), now
         if self._decay is not None:
-            if now - self._switched >= self._decay.length:
+            if now - self._jumped >= self._decay.length:
                 self._decay = None
             else:
-                turns = rotations.from_rotation_vector(self._decay.at(now - self._switched))
+                turns = rotations.from_rotation_vector(self._decay.at(now - self._jumped))
                 local = pose.rotations.copy()
-                local[joints] = rotations.multiply(turns, local.take(joints, 0))
+                local[joints] = rotations.multiply(turns, reached)
                 pose = replace(pose, rotations=local)
         self._shown = pose.rotations.take(joints, 0)
         return pose

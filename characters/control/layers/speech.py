@@ -18,7 +18,8 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.motion.curves import ease
 from cubeling.characters.motion.layers import lay_over
 from cubeling.characters.skeleton.pose import Pose
-from cubeling.characters.smoothing import low_pass
+from cubeling.characters.skeleton.way_round import WayRound
+from cubeling.characters.smoothing import SpringValue
 from cubeling.characters.synthesis.gestures.playing import PlannedGestureMotion
 
 CUT_S = 0.3
@@ -30,8 +31,9 @@ JOIN_S = 0.15
 HANDS_FREE = {"idle": 1.0, "walk": 0.8, "run": 0.3}
 """Share of gestures that is shown while a character does something; none in its actions."""
 
-FREE_LAG_S = 0.2
-"""Lag with which hands become free, and are taken [s]."""
+FREE_LAG_S = 0.4
+"""Lag with which hands become free, and are taken [s]: what is laid over an action that takes over
+may not go faster than the action."""
 
 HANDS_SHARE = 0.4
 """Share of the head's beats that is left to a character whose hands beat too."""
@@ -52,6 +54,7 @@ class SpokenSpeech:
         self._joined = now
         self._cut: float | None = None
         self._beats: PlannedGestureMotion | None = None
+        self._way = WayRound()
         self.end = speech.start + self.body.end
         """When it is at rest again [s]."""
         if character.gestures is not None:
@@ -84,7 +87,7 @@ class SpokenSpeech:
             return pose, 0.0
         # A copy: what is laid over is overwritten, and these may be rows of the library.
         turns = self._beats.turns(own).copy()
-        return lay_over(pose, self._beats.joints, turns, weight), weight
+        return lay_over(pose, self._beats.joints, turns, weight, self._way), weight
 
 
 class SpeechLayer:
@@ -94,13 +97,13 @@ class SpeechLayer:
         self._character = replace(character, seed=seed)
         self._arms = ArmJoints(character.skeleton, character.anatomy)
         self._spoken: list[SpokenSpeech] = []
-        self._free = 1.0
+        self._free = SpringValue(1.0)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose | Found:
         """Return the pose with gestures and living arms, and what other layers do with a speech."""
         speech, now = context.command.speech, context.command.timestamp
         free = HANDS_FREE.get(context.frame.state, 0.0)
-        self._free = low_pass(self._free, free, context.elapsed, FREE_LAG_S)
+        free = self._free.follow(free, context.elapsed, FREE_LAG_S)
         if speech is None and not self._spoken:
             return pose
         self._follow(speech, now)
@@ -109,7 +112,7 @@ class SpeechLayer:
         nods = emphasis * (1.0 if self._character.gestures is None else HANDS_SHARE)
         state, arms = NOT_SPEAKING, np.zeros(2 * len(ARM_MOVEMENTS))
         for number, spoken in enumerate(self._spoken):
-            body, share = spoken.body, self._free * spoken.share(now)
+            body, share = spoken.body, free * spoken.share(now)
             body.advance(now - spoken.speech.start)
             pose, covered = spoken.over(pose, share * min(emphasis, 1.0))
             arms += body.arms * ((1.0 - UNDER_GESTURE * covered) * share * size)

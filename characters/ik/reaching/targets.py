@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cubeling.characters.skeleton.pose import Array
+from cubeling.characters.skeleton.way_round import WayRound
 
 ReachKind = Literal["reach", "touch", "point", "grasp", "hold"]
 
@@ -40,6 +41,10 @@ class HandTarget:
 
     weight: float = 1.0
     """0 as in the pose … 1 there."""
+
+    way: WayRound | None = None
+    """By which way a hand that is part of the way there goes on from the frame before; None for the
+    shorter one."""
 
 
 @dataclass(frozen=True)

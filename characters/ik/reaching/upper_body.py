@@ -50,7 +50,6 @@ from cubeling.characters.ik.reaching.torso import (
     follow_torso,
     turn_torso,
 )
-from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
 from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 from cubeling.characters.skeleton.scalar_quaternions import (
@@ -64,6 +63,7 @@ from cubeling.characters.skeleton.scalar_quaternions import (
     rotate,
     subtract,
 )
+from cubeling.characters.skeleton.way_round import WayRound
 
 PRONATION_RAD = math.radians(35.0)
 """How far a hand that is not asked for faces down, from facing inward."""
@@ -289,7 +289,7 @@ class UpperBody:
         if collar >= 0:
             above = frames.turns[self.kinematics.parents[collar]]
             rows.append(multiply(conjugate(above), multiply(hand.swung, frames.turns[collar])))
-        _blend(local, self._written[arm.hand.side], rows, weight)
+        _blend(local, self._written[arm.hand.side], rows, weight, hand.target.way)
         if arm.hand.fingers:
             shape = hand.target.shape or SHAPE_OF_KIND[hand.target.kind]
             posture = self.shapes.posture(arm.hand.side, shape)
@@ -312,7 +312,8 @@ class UpperBody:
         now = BentArm(turns[upper], turns[lower], turns[paw], places[paw], places[lower])
         swivel = swivel_of(arm, places[upper], places[lower], places[paw], torso.chest)
         bent = bend_to_wrist(arm, wrist, shoulder, now, torso.chest_after(turned), swivel)
-        still = HandTarget(places[paw])
+        # As far as the other hand reaches: solved all at once, a paw in a gesture would jump.
+        still = HandTarget(places[paw], weight=reaching.target.weight)
         held = HandOnItsWay(arm, still, wrist, places[paw], shoulder, IDENTITY)
         self._write(local, frames, held, bent, from_rotation_vector(turned))
 
@@ -356,10 +357,15 @@ def _bearer(torso: PlacedTorso, hand: HandOnItsWay, turned: Vector) -> Bearer:
 
 
 def _blend(
-    local: Array, joints: NDArray[np.intp], turns: Array | list[Quaternion], weight: float
+    local: Array,
+    joints: NDArray[np.intp],
+    turns: Array | list[Quaternion],
+    weight: float,
+    way: WayRound | None = None,
 ) -> None:
     """Turn joints to local rotations, or part of the way there."""
     if weight >= 1.0:
         local[joints] = turns
     else:
-        local[joints] = rotations.nlerp(local[joints], turns, weight)
+        mixed = (way or WayRound()).mix(local.take(joints, 0), np.array(turns), weight)
+        local[joints] = mixed

@@ -15,7 +15,7 @@ from cubeling.characters.control.controllers import default_height
 from cubeling.characters.control.layers import FOOT_LAYERS
 from cubeling.characters.control.layers.gaze import GazeLayer
 from cubeling.characters.control.layers.posture import PostureLayer
-from cubeling.characters.control.layers.reach import CLEARANCE, FADE_S, ReachLayer, surface_of
+from cubeling.characters.control.layers.reach import CLEARANCE, LEAVE_S, ReachLayer, surface_of
 from cubeling.characters.control.layers.sitting_up import SittingUpLayer
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Array, Pose
@@ -101,9 +101,9 @@ def test_a_moving_place_is_followed_within_a_centimetre() -> None:
 
 def test_what_is_left_out_fades_within_its_time() -> None:
     one = intent((0.12, 0.55, 0.25), 0.0, 0.5, hand="left")
-    frames = played(lambda now: [one] if now < 1.0 else [], 1.6)
-    idle = played(lambda _: [], 1.6)
-    gone = int((1.0 + FADE_S) * RATE) + 2
+    frames = played(lambda now: [one] if now < 1.0 else [], 1.8)
+    idle = played(lambda _: [], 1.8)
+    gone = int((1.0 + LEAVE_S) * RATE) + 2
     assert frames[gone].pose.rotations == pytest.approx(idle[gone].pose.rotations, abs=1e-9)
     assert largest_step_deg(frames) < 10.0
 

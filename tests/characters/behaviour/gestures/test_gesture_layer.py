@@ -12,6 +12,7 @@ from cubeling.characters.behaviour.gestures.planning import GesturePlanning, Ges
 from cubeling.characters.behaviour.gestures.timing import PhaseTimes, natural_times
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
+from cubeling.characters.control.layers.gesture_playback import GesturePlayback
 from cubeling.characters.control.layers.gestures import SHOWN_AT_ONCE, GestureLayer
 from cubeling.characters.control.layers.sitting_up import SittingUpLayer
 from tests.examples import some
@@ -127,13 +128,47 @@ def test_new_times_are_followed_without_a_jump(human, performer, shift, when):
         assert peak == pytest.approx(stroke, abs=1.01 / RATE)
 
 
-def test_one_that_is_left_out_fades(human):
+@pytest.mark.parametrize("when", some([0.6, 1.0, 1.3]))
+def test_one_that_is_left_out_goes_as_gently_as_it_came(human, when):
     times = natural_times(LIFT, 0.3)
-    shown, poses = _play(human, _asked(LIFT, times, end=1.2), 2.0)
-    _, bare = _play(human, lambda now: None, 2.0)
-    assert _largest_step(poses) < MAX_STEP_DEG
-    gone = int(np.searchsorted(shown, 1.2 + 0.35))
+    shown, poses = _play(human, _asked(LIFT, times, end=when), when + 1.2)
+    _, whole = _play(human, _asked(LIFT, times), 2.6)
+    _, bare = _play(human, lambda now: None, when + 1.2)
+    assert _largest_step(poses) < 1.2 * _largest_step(whole)
+    gone = int(np.searchsorted(shown, when + 1.0))
     assert poses[gone].rotations == pytest.approx(bare[gone].rotations, abs=1e-9)
+
+
+def test_one_whose_strokes_are_to_be_over_is_called_off_as_gently(human):
+    """So is one that waits for the cube, when the cube is there before the hand is up."""
+    times = natural_times(LIFT, 0.3)
+    now = times.ready - 0.3
+    strokes = dict.fromkeys(("ready", "stroke_start", "stroke", "stroke_end", "relax"), now)
+    over = replace(times, **strokes, end=now + 0.5)
+
+    def asked(time):
+        return BehaviourIntent((GestureIntent("g", LIFT, times if time < now else over),))
+
+    _, poses = _play(human, asked, now + 0.5)
+    _, whole = _play(human, _asked(LIFT, times), 2.6)
+    assert _largest_step(poses) < 1.2 * _largest_step(whole)
+
+
+def test_one_that_is_left_out_stops_at_once(human):
+    """Hands in the middle of a stroke do not finish it."""
+    times = natural_times(LIFT, 0.3)
+    playback = GesturePlayback(
+        GestureIntent("g", LIFT, times), "right", GestureRealizer.of(human), 1.0
+    )
+    rest = human.clips["idle"].sample(0.0)
+    now = times.stroke_start + 0.05
+    for frame in range(3):
+        playback.over(rest, now + frame / RATE, 1.0)
+    now += 3 / RATE
+    playback.give_up(now, 1 / RATE)
+    stopped = playback.moment(now)
+    assert playback.moment(now + 0.1) - stopped < 0.08
+    assert playback.moment(now + 5.0) - playback.moment(now + 0.3) < 0.01
 
 
 def test_one_that_is_heard_of_late_joins_in(human):
