@@ -92,12 +92,11 @@ def acts_of(character: Character, animator: Animator) -> dict[str, Act]:
     said = _said()
     acts: dict[str, Act] = {"idle": lambda begun: {}}
     for name, speed, target in (("walk", 2.0, AHEAD), ("run", 4.5, AHEAD), ("turn", 2.0, BESIDE)):
-        going = LocomotionIntent(speed, target)
-        acts[name] = lambda begun, going=going: {"locomotion": going}
+        acts[name] = _always("locomotion", LocomotionIntent(speed, target))
     for name in animator.actions[:3]:
-        acts[name] = lambda begun, name=name: {"action": ActionIntent(name, 0.5)}
+        acts[name] = _always("action", ActionIntent(name, 0.5))
     for name in ("WAVE", "OPEN_ARMS", "FACEPALM"):
-        acts[name] = lambda begun, name=name: _body(gestures=(_gesture(name, begun),))
+        acts[name] = _gesturing(name)
     acts["reach"] = lambda begun: _body(
         reaches=(ReachIntent("it", place, Times(begun, begun + 0.6), "touch", "right"),)
     )
@@ -115,6 +114,14 @@ def acts_of(character: Character, animator: Animator) -> dict[str, Act]:
         postures=(PostureIntent("it", "LEANING_FORWARD", Times(begun, begun + 0.6)),),
     )
     return acts
+
+
+def _always(field: str, intent: object) -> Act:
+    return lambda begun: {field: intent}
+
+
+def _gesturing(name: str) -> Act:
+    return lambda begun: _body(gestures=(_gesture(name, begun),))
 
 
 def _body(**intents: Any) -> Fields:
@@ -204,9 +211,9 @@ class Player:
         turns = np.array(shown)
         steps = rotations.multiply(rotations.conjugate(turns[:-1]), turns[1:])
         speeds = np.linalg.norm(rotations.to_rotation_vector(steps), axis=-1) / FRAME_S
-        frame, joint = np.unravel_index(np.argmax(speeds), speeds.shape)
+        latest, joint = np.unravel_index(np.argmax(speeds), speeds.shape)
         name = self._names[self._joints[joint]]
-        time = float(start - begun + (frame + 1) * FRAME_S)
+        time = float(start - begun + (latest + 1) * FRAME_S)
         return Peak(float(speeds.max()), name, time)
 
 

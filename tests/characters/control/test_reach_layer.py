@@ -101,8 +101,8 @@ def test_a_moving_place_is_followed_within_a_centimetre() -> None:
 
 def test_what_is_left_out_fades_within_its_time() -> None:
     one = intent((0.12, 0.55, 0.25), 0.0, 0.5, hand="left")
-    frames = played(lambda now: [one] if now < 1.0 else [], 1.8)
-    idle = played(lambda _: [], 1.8)
+    frames = played(lambda now: [one] if now < 1.0 else [], 2.0)
+    idle = played(lambda _: [], 2.0)
     gone = int((1.0 + LEAVE_S) * RATE) + 2
     assert frames[gone].pose.rotations == pytest.approx(idle[gone].pose.rotations, abs=1e-9)
     assert largest_step_deg(frames) < 10.0
