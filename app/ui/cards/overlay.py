@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.affect import OCC_FACES
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.pipeline.step import Rect, RobotView, Step, speech_start
 from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
@@ -291,19 +292,24 @@ def _finite(mood: float) -> float:
 
 @lru_cache(maxsize=8)
 def _robot(name: str, link: str, label: str, mood: float, scale: float) -> Canvas:
-    name = name.replace("_", " ")
-    words = {"none": "no robot", "ready": f"{name} is {label}"}.get(link, f"{name} {link}")
+    named = name.replace("_", " ")
+    words = {"none": "no robot", "ready": _feeling(name, label)}.get(link, f"{named} {link}")
     canvas = _robot_background(words, scale).copy()
     draw_face(canvas, 56, 54, 38, mood, crest=True)
     _mood_knob(canvas, MOOD_BAR_X, BAR_Y, MOOD_BAR_WIDTH, mood)
     return canvas
 
 
+def _feeling(name: str, label: str) -> str:
+    """Return what a robot feels; the 24 emotions are nouns, other labels adjectives."""
+    return f"{name.replace('_', ' ')} {'feels' if label in OCC_FACES else 'is'} {label}"
+
+
 def _virtual_robot(robot: RobotView, portrait: NDArray[np.uint8], scale: float) -> Canvas:
     caption = {"none": "no robot connected", "ready": "simulated robot"}.get(
         robot.link, f"simulated robot {robot.link}"
     )
-    words = f"{robot.name.replace('_', ' ')} is {robot.label}"
+    words = _feeling(robot.name, robot.label)
     canvas = _virtual_robot_background(words, caption, scale).copy()
     canvas.picture(VIRTUAL_ROBOT_FRAME, VIRTUAL_ROBOT_FRAME, portrait, 12)
     _mood_knob(canvas, *VIRTUAL_ROBOT_BAR, _finite(robot.mood))
