@@ -93,7 +93,7 @@ def page_address(server: WebServer, token: Token) -> Iterator[str]:
         f"[bold]{server.fingerprint[:23]}[/]"
     )
     yield (
-        f"[dim]Without a warning, over USB: [cyan]adb reverse tcp:{port} tcp:{port}[/], then "
+        f"[dim]Without a warning, over USB: [cyan]adb reverse tcp:{server.ports[0]} tcp:{server.ports[0]}[/], then "
         f"{escape(own)} on the phone, or in a browser of this computer. Ctrl-C ends.[/]"
     )
 

@@ -1,0 +1,65 @@
+"""A proxy on loopback that stalls, drops connections, and is cut off."""
+
+import asyncio
+import contextlib
+
+
+class FaultyProxy:
+    """Forwards connections to a port. `stalled` holds all bytes back, `cut` refuses everybody."""
+
+    def __init__(self, target: int) -> None:
+        self._target = target
+        self._flowing = asyncio.Event()
+        self._flowing.set()
+        self._cut = False
+        self._writers: set[asyncio.StreamWriter] = set()
+        self.port = 0
+
+    async def __aenter__(self) -> "FaultyProxy":
+        self._server = await asyncio.start_server(self._serve, "127.0.0.1", 0)
+        self.port = self._server.sockets[0].getsockname()[1]
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self._server.close()
+        self.drop()
+
+    def drop(self) -> None:
+        """End all connections at once."""
+        for writer in tuple(self._writers):
+            writer.transport.abort()
+
+    async def stall(self, seconds: float) -> None:
+        """Hold back what comes for some seconds; nobody is told."""
+        self._flowing.clear()
+        await asyncio.sleep(seconds)
+        self._flowing.set()
+
+    async def cut(self, seconds: float) -> None:
+        """End all connections, and refuse new ones for some seconds."""
+        self._cut = True
+        self.drop()
+        await asyncio.sleep(seconds)
+        self._cut = False
+
+    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        if self._cut:
+            writer.transport.abort()
+            return
+        try:
+            to_reader, to_writer = await asyncio.open_connection("127.0.0.1", self._target)
+        except OSError:
+            writer.transport.abort()
+            return
+        pair = {writer, to_writer}
+        self._writers |= pair
+        await asyncio.gather(self._copy(reader, to_writer), self._copy(to_reader, writer))
+        self._writers -= pair
+
+    async def _copy(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        with contextlib.suppress(OSError):
+            while data := await reader.read(65536):
+                await self._flowing.wait()
+                writer.write(data)
+                await writer.drain()
+        writer.close()

@@ -1,0 +1,79 @@
+"""Runs `cubeling serve` beside a benchmark."""
+
+import asyncio
+import re
+import signal
+import subprocess
+import sys
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cubeling.app.admission import Token
+
+TOKEN = Token("bench-token")
+READY_S = 60.0
+
+
+@dataclass
+class Served:
+    """A running server."""
+
+    process: subprocess.Popen
+    port: int
+    folder: Path
+    output: str = field(default="")
+
+    @property
+    def address(self) -> str:
+        return self.at(self.port)
+
+    def at(self, port: int, path: str = "/") -> str:
+        """Return the address of a page at another port, as of a proxy."""
+        return f"http://localhost:{port}{path}#{TOKEN.text}"
+
+    def resident_mb(self) -> float:
+        """Return the memory of the process [MB]."""
+        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
+
+
+@asynccontextmanager
+async def serving(folder: Path, *options: str):
+    """Run the server until the block ends; `output` then has its summary."""
+    log = folder / "serve.log"
+    with log.open("w") as out:
+        process = subprocess.Popen(
+            [
+                *(sys.executable, "-c", "from cubeling.app.entry import main; main()"),
+                *("serve", "--port", "0"),
+                *("--token", TOKEN.text, "--preferences", str(folder / "preferences.toml")),
+                *("--folder", str(folder), *options),
+            ],
+            stdout=out,
+            stderr=out,
+        )
+        try:
+            for _ in range(round(READY_S / 0.05)):
+                found = re.search(r"localhost:(\d+)/#", log.read_text())
+                if found or process.poll() is not None:
+                    break
+                await asyncio.sleep(0.05)
+            assert found, log.read_text()
+            served = Served(process, int(found[1]), folder)
+            yield served
+        finally:
+            process.send_signal(signal.SIGINT)
+            try:
+                process.wait(30)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+    served.output = log.read_text()
+
+
+def line_times_ms(output: str) -> tuple[float, float]:
+    """Return what a frame took in the program, in the median and at 95 %, by its summary [ms]."""
+    found = re.search(r"a frame took\s+([\d.]+) ms in the median, ([\d.]+) ms", output)
+    assert found, output
+    return float(found[1]), float(found[2])
