@@ -23,8 +23,10 @@ LAST_WORDS_S = 1.0
 class ShownPicture(Protocol):
     """A picture for the pages."""
 
-    number: int
-    """Of the picture, from 1; a page names it when it has shown it."""
+    @property
+    def number(self) -> int:
+        """Of the picture, from 1; a page names it when it has shown it."""
+        ...
 
     def data(self, kind: str) -> bytes | None:
         """Return it encoded: "cards", "plain" or "cutout"; None if nobody wanted that."""
@@ -101,7 +103,7 @@ class PageClient:
             await asyncio.gather(sending, receiving, return_exceptions=True)
 
     def leave(self, why: str) -> None:
-        """Let `serve` end."""
+        """Disconnect it for a reason, which `serve` returns."""
         if not self._left.done():
             self._left.set_result(why)
 

@@ -81,7 +81,7 @@ def page_address(server: WebServer, token: Token) -> Iterator[str]:
         yield f"Open this in a browser of this computer: [bold cyan]{escape(own)}[/]"
         yield "[dim]A phone? Add [cyan]--lan[/]. Ctrl-C ends.[/]"
         return
-    host, port = server.listeners[1].host, server.ports[1]
+    host, port, own_port = server.listeners[1].host, server.ports[1], server.ports[0]
     address = f"https://{host}:{port}/#{token.text}"
     drawn = io.StringIO()
     segno.make(address, error="l", micro=False).terminal(drawn, compact=True)
@@ -93,8 +93,8 @@ def page_address(server: WebServer, token: Token) -> Iterator[str]:
         f"[bold]{server.fingerprint[:23]}[/]"
     )
     yield (
-        f"[dim]Without a warning, over USB: [cyan]adb reverse tcp:{server.ports[0]} tcp:{server.ports[0]}[/], then "
-        f"{escape(own)} on the phone, or in a browser of this computer. Ctrl-C ends.[/]"
+        f"[dim]Without a warning, over USB: [cyan]adb reverse tcp:{own_port} tcp:{own_port}[/], "
+        f"then {escape(own)} on the phone, or in a browser of this computer. Ctrl-C ends.[/]"
     )
 
 

@@ -51,7 +51,7 @@ class PictureEncoder:
         Called with each encoded picture, on the encoder's thread.
     """
 
-    def __init__(self, show: Callable[[PagePicture], None]) -> None:
+    def __init__(self, show: Callable[[PagePicture], object]) -> None:
         self._show = show
         self._changed = threading.Condition()
         self._newest: tuple[PagePicture, dict[str, Picture]] | None = None

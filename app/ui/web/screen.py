@@ -14,7 +14,7 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.ui.cards.hint_reader import HintReader
 from cubeling.app.ui.cards.layout import CardLayout
-from cubeling.app.ui.cards.overlay import overlay
+from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
 from cubeling.app.ui.cards.shown_step import shown_step
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.notice import Notice
@@ -142,6 +142,8 @@ class WebScreen:
         assert step.picture is not None
         picture = self._seen(step.picture)
         shown = shown_step(step, 1.0, self._mirrored)
+        if self._virtual_robot is not None:
+            self._virtual_robot.fit(virtual_robot_side(picture.shape[0]))
         return overlay(picture, shown, robot, self._virtual_robot, self._layout)
 
     def _tell(self) -> None:

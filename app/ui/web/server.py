@@ -1,6 +1,8 @@
 """The server of the page: it runs on a thread, and nobody who plays waits for it."""
 
 import asyncio
+import contextlib
+import gc
 import re
 import socket
 import ssl
@@ -9,7 +11,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any, cast, get_args
 from urllib.parse import urlsplit
 
 from aiohttp import web
@@ -36,6 +38,9 @@ CAMERA_QUIET_S = 2.0
 """A page whose camera sends nothing for so long gives its place up to another one [s]."""
 
 CHECK_EVERY_S = 0.5
+CONNECTIONS_PER_COLLECTION = 20
+"""After so many connections, what they have left is collected."""
+
 MAX_REQUESTS = 64
 """What players have asked and nobody has carried out yet; of more, the oldest are forgotten."""
 
@@ -106,6 +111,7 @@ class WebServer:
         self._owner: PageClient | None = None
         self._seen = -float("inf")
         self._tags: deque[tuple[bytes, str, float]] = deque(maxlen=64)
+        self._connected = 0
         self._tasks: set[asyncio.Task[None]] = set()
         self._sockets = [_listen(each) for each in listeners]
         self.ports: list[int] = [each.getsockname()[1] for each in self._sockets]
@@ -137,31 +143,34 @@ class WebServer:
 
     def show(self, picture: ShownPicture) -> None:
         """Show a picture on all pages."""
-        self._call(lambda: [each.show(picture) for each in self._clients.values()])
+        self._tell_all(lambda client: client.show(picture))
 
     def sound(self, message: bytes) -> None:
         """Let all pages hear a binary message of sound."""
-        self._call(lambda: [each.sound(message) for each in self._clients.values()])
+        self._tell_all(lambda client: client.sound(message))
 
     def report(self, status: dict[str, object]) -> None:
         """Tell all pages the status of the session, and those that come later."""
         self._status = status
-        self._call(lambda: [each.tell(do="status", **status) for each in self._clients.values()])
+        self._tell_all(lambda client: client.tell(do="status", **status))
 
     def say(self, words: str) -> None:
         """Show some words on all pages for some seconds."""
-        self._call(lambda: [each.tell(do="words", words=words) for each in self._clients.values()])
+        self._tell_all(lambda client: client.tell(do="words", words=words))
 
     def close(self) -> None:
         """Disconnect all; a second call does nothing."""
         if not self._closing:
             self._closing = True
-            self._call(lambda: None)
             self._thread.join(5.0)
 
-    def _call(self, function: Callable[[], object]) -> None:
-        if not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(function)
+    def _tell_all(self, tell: Callable[[PageClient], None]) -> None:
+        def tell_each() -> None:
+            for client in self._clients.values():
+                tell(client)
+
+        with contextlib.suppress(RuntimeError):  # its loop has ended
+            self._loop.call_soon_threadsafe(tell_each)
 
     def _run(self) -> None:
         asyncio.set_event_loop(self._loop)
@@ -207,6 +216,7 @@ class WebServer:
                 await asyncio.sleep(CHECK_EVERY_S)
                 continue
             accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            self._connected += 1
             self._start(self._connect(accepted, tls))
 
     async def _connect(self, accepted: socket.socket, tls: ssl.SSLContext | None) -> None:
@@ -223,6 +233,11 @@ class WebServer:
 
     def _check(self, now: float) -> None:
         """Let go whom the limits of time let go."""
+        # What is no HTTP leaves cycles with a quarter of a megabyte each. A program that draws
+        # looks for garbage too seldom for a flood of those, and only young objects are looked at.
+        if self._connected >= CONNECTIONS_PER_COLLECTION:
+            self._connected = 0
+            gc.collect(0)
         for handler, since in tuple(self._strangers.items()):
             if handler.transport is None or now - since > self._limits.stranger_s:
                 self._drop(handler)
@@ -266,7 +281,7 @@ class WebServer:
         self._strangers.pop(request.protocol, None)
         cutout = request.query.get("background") == "none"
         kind = "cards" if role in PLAYERS else "cutout" if cutout else "plain"
-        client = PageClient(opened, name, role, kind, self._limits, self._clock)
+        client = PageClient(opened, name, cast(Role, role), kind, self._limits, self._clock)
         await self._exchange(client)
         return opened
 

@@ -18,7 +18,7 @@ from tests.bench.web.camera import READ_CLOCK, write_camera
 from tests.bench.web.chromium import Tab, chromium
 from tests.bench.web.faulty_proxy import FaultyProxy
 from tests.bench.web.hostile import hostile
-from tests.bench.web.serving import line_times_ms, serving
+from tests.bench.web.serving import line_times_ms, say, serving
 
 RATE = 30.0
 """Frames a second of the fake camera."""
@@ -28,7 +28,8 @@ LOOP_S = 10.0
 
 SAMPLE = (
     "window.samples = []; window.onpicture = (id, taken) => { window.lastTaken = taken; "
-    "samples.push([clockOf($('camera')), clockOf($('picture')), taken ? now() - taken : 0]); }; true"
+    "samples.push([clockOf($('camera')), clockOf($('picture')), taken ? now() - taken : 0]); }; "
+    "true"
 )
 
 
@@ -66,15 +67,15 @@ async def start(folder: Path) -> None:
         async with serving(folder, "--scenario", "companion") as served:
             tab = await browser.tab()
             await play(tab, served.address)
-            print(f"from `cubeling serve` to playing: {time.monotonic() - began:.1f} s (bar: 20 s)")
+            say(f"from `cubeling serve` to playing: {time.monotonic() - began:.1f} s (bar: 20 s)")
             by_clock, by_page, rate = await sampled(tab, 15.0)
     line, line_95 = line_times_ms(served.output)
-    print(f"glass to glass, by clocks in the pictures: {median_95(by_clock)}, {rate:.1f} Hz")
-    print(f"the same as the page shows it:             {median_95(by_page)}")
-    print(f"of that the line's own time:               {line:.0f} ms, 95 % {line_95:.0f} ms")
+    say(f"glass to glass, by clocks in the pictures: {median_95(by_clock)}, {rate:.1f} Hz")
+    say(f"the same as the page shows it:             {median_95(by_page)}")
+    say(f"of that the line's own time:               {line:.0f} ms, 95 % {line_95:.0f} ms")
     beyond = statistics.median(by_clock) - line
     beyond_95 = sorted(by_clock)[int(0.95 * len(by_clock))] - line_95
-    print(
+    say(
         f"beyond it: {beyond * RATE / 1000:.1f} frame intervals in the median (bar: 2), "
         f"{beyond_95 * RATE / 1000:.1f} at 95 % (bar: 4)"
     )
@@ -83,33 +84,36 @@ async def start(folder: Path) -> None:
 async def faults(folder: Path) -> None:
     """Stall, drop and cut the connection, reload and hide the page; measure how it goes on."""
     write_camera(folder / "camera.mjpeg", "companion", LOOP_S)
-    async with chromium(folder / "camera.mjpeg") as browser, serving(folder) as served:
-        async with FaultyProxy(served.port) as proxy:
-            tab = await browser.tab()
-            await play(tab, served.at(proxy.port))
-            before = (await sampled(tab, 6.0))[0]
-            print(f"before:                          late by {median_95(before)}")
-            for name, fault in (
-                ("stalled for 1 s", lambda: proxy.stall(1.0)),
-                ("dropped", lambda: proxy.cut(0.0)),
-                ("cut for 10 s", lambda: proxy.cut(10.0)),
-                ("stalled for 10 s", lambda: proxy.stall(10.0)),
-            ):
-                await fault()
-                back = await _time_to_picture(tab)
-                late = (await sampled(tab, 6.0))[0]
-                print(f"{name + ':':<32} back in {back:.2f} s, then late by {median_95(late)}")
-            await tab.call("Page.reload")
-            await asyncio.sleep(1.0)
-            await tab.until("document.readyState === 'complete' && !$('start').hidden")
-            await tab.run(f"{READ_CLOCK}; {SAMPLE}; document.getElementById('go').click()")
-            print(f"{'reloaded, and play touched:':<32} back in {await _time_to_picture(tab):.2f} s")
-            other = await browser.tab()
-            await other.call("Page.bringToFront")
-            await asyncio.sleep(3.0)
-            await tab.call("Page.bringToFront")
-            print(f"{'hidden for 3 s:':<32} back in {await _time_to_picture(tab):.2f} s")
-            assert not [each for each in tab.log if "exception" in each], tab.log
+    async with (
+        chromium(folder / "camera.mjpeg") as browser,
+        serving(folder) as served,
+        FaultyProxy(served.port) as proxy,
+    ):
+        tab = await browser.tab()
+        await play(tab, served.at(proxy.port))
+        before = (await sampled(tab, 6.0))[0]
+        say(f"before:                          late by {median_95(before)}")
+        for name, fault in (
+            ("stalled for 1 s", lambda: proxy.stall(1.0)),
+            ("dropped", lambda: proxy.cut(0.0)),
+            ("cut for 10 s", lambda: proxy.cut(10.0)),
+            ("stalled for 10 s", lambda: proxy.stall(10.0)),
+        ):
+            await fault()
+            back = await _time_to_picture(tab)
+            late = (await sampled(tab, 6.0))[0]
+            say(f"{name + ':':<32} back in {back:.2f} s, then late by {median_95(late)}")
+        await tab.call("Page.reload")
+        await asyncio.sleep(1.0)
+        await tab.until("document.readyState === 'complete' && !$('start').hidden")
+        await tab.run(f"{READ_CLOCK}; {SAMPLE}; document.getElementById('go').click()")
+        say(f"{'reloaded, and play touched:':<32} back in {await _time_to_picture(tab):.2f} s")
+        other = await browser.tab()
+        await other.call("Page.bringToFront")
+        await asyncio.sleep(3.0)
+        await tab.call("Page.bringToFront")
+        say(f"{'hidden for 3 s:':<32} back in {await _time_to_picture(tab):.2f} s")
+        assert not [each for each in tab.log if "exception" in each], tab.log
 
 
 async def _time_to_picture(tab: Tab) -> float:
@@ -130,7 +134,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scenes", nargs="*", choices=[*SCENES, []], help="all without a name")
     for name in parser.parse_args().scenes or SCENES:
-        print(f"-- {name}: {SCENES[name].__doc__}")
+        say(f"-- {name}: {SCENES[name].__doc__}")
         with TemporaryDirectory(prefix="cubeling-web-") as folder:
             asyncio.run(SCENES[name](Path(folder)))
 

@@ -40,7 +40,8 @@ class Tab:
         answer = await asyncio.wait_for(future, START_S)
         if "error" in answer:
             raise AssertionError(f"{method}: {answer['error']}")
-        return answer["result"]
+        result: dict[str, Any] = answer["result"]
+        return result
 
     async def run(self, script: str) -> Any:
         """Return what an expression is worth in the page, as if the user had asked for it."""

@@ -9,17 +9,22 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rich.console import Console
+
 from cubeling.app.admission import Token
 
 TOKEN = Token("bench-token")
 READY_S = 60.0
+
+say = Console(highlight=False, soft_wrap=True).print
+"""Prints a line of the result."""
 
 
 @dataclass
 class Served:
     """A running server."""
 
-    process: subprocess.Popen
+    process: subprocess.Popen[bytes]
     port: int
     folder: Path
     output: str = field(default="")
@@ -35,7 +40,7 @@ class Served:
     def resident_mb(self) -> float:
         """Return the memory of the process [MB]."""
         status = Path(f"/proc/{self.process.pid}/status").read_text()
-        return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
+        return int(status.partition("VmRSS:")[2].split()[0]) / 1024
 
 
 @asynccontextmanager

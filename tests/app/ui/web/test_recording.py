@@ -35,11 +35,8 @@ class Leaving(NullScreen):
 
     def show(self, step, robot):
         self.frames.append(step.frame)
+        self.closed = len(self.frames) >= self._count
         return super().show(step, robot)
-
-    @property
-    def closed(self):
-        return len(self.frames) >= self._count
 
 
 @pytest.mark.slow("tracks the frames of a session, live and once more")
@@ -87,7 +84,9 @@ def test_timestamps_are_the_phones_brought_to_our_clock():
     for number, late in enumerate((0.010, 0.004, 0.300, 0.012)):
         now[0] = 60.0 + number / 10 + late
         assert feed.push(jpeg, 5000.0 + number / 10)
-        taken.append(feed.next(number, 0.0)[2])
+        found = feed.next(number, 0.0)
+        assert found is not None
+        taken.append(found[2])
     # From the quickest message on, what is late is known to be.
     assert [round(each, 3) for each in taken] == [60.01, 60.104, 60.204, 60.304]
 

@@ -234,7 +234,7 @@ def test_a_page_that_reads_nothing_holds_two_pictures_and_stalls_nobody():
                 assert await quick.picture() == number
                 await quick.say(do="shown", id=number)
             server.say("done")
-            seen = []
+            seen: list[int] = []
             while len(seen) < 2:
                 seen.append(await slow.picture())
             assert seen[0] == 1
