@@ -289,7 +289,7 @@ def open_sound(
         live=options.windowed,
         muted=options.muted,
         moods=not is_real_robot(options.robot),  # such a robot has a voice of its own
-        **({} if loudspeaker is None else {"loudspeaker": loudspeaker}),
+        loudspeaker=loudspeaker,
     )
     closing.callback(sound.close)
     return sound

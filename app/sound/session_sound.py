@@ -46,7 +46,7 @@ class SessionSound:
     moods
         Whether the robot's moods are heard.
     loudspeaker
-        Opens what a live session is heard on.
+        Opens what a live session is heard on; None for the loudspeaker of this computer.
     """
 
     def __init__(
@@ -56,12 +56,12 @@ class SessionSound:
         live: bool = False,
         muted: bool = False,
         moods: bool = True,
-        loudspeaker: Callable[[Mixer], SoundOutput] = Loudspeaker,
+        loudspeaker: Callable[[Mixer], SoundOutput] | None = None,
     ) -> None:
         self.mixer = mixer
         """Its `volume` may be changed at any time."""
         self._live, self._moods = live, moods
-        self._open_loudspeaker = loudspeaker
+        self._open_loudspeaker = loudspeaker or Loudspeaker
         self._loudspeaker: SoundOutput | None = None
         self._character: Character | None = None
         self._cues: SoundCues | None = None

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 import pytest
 
+from cubeling.app.running import opened_session
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.playback import parts
 from cubeling.app.running.playback.background import BackgroundCall
@@ -125,7 +126,7 @@ def test_another_camera_is_taken_without_a_gap_in_time(play, short_session, monk
             frame = super().wait(timeout, patience)
             return frame and replace(frame, image=cv2.resize(frame.image, self.size))
 
-    monkeypatch.setattr(parts, "open_source", lambda uri, size=None: SmallCamera())
+    monkeypatch.setattr(opened_session, "open_source", lambda uri, size=None: SmallCamera())
     player = play(*asked("camera", "camera:1"), live=True)
     assert player.notices[-1] == "The camera is now camera:1"
     stamps = [step.frame.timestamp for step in player.steps]

@@ -17,6 +17,7 @@ from typing import Any
 from tests.bench.web.camera import READ_CLOCK, write_camera
 from tests.bench.web.chromium import Tab, chromium
 from tests.bench.web.faulty_proxy import FaultyProxy
+from tests.bench.web.guide_picture import picture
 from tests.bench.web.hostile import hostile
 from tests.bench.web.serving import line_times_ms, say, serving
 
@@ -127,13 +128,15 @@ SCENES: dict[str, Callable[[Path], Coroutine[Any, Any, None]]] = {
     "start": start,
     "faults": faults,
     "hostile": hostile,
+    "picture": picture,
 }
+"""The scenes by name; the picture is drawn only when it is named."""
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scenes", nargs="*", choices=[*SCENES, []], help="all without a name")
-    for name in parser.parse_args().scenes or SCENES:
+    for name in parser.parse_args().scenes or [*SCENES][:-1]:
         say(f"-- {name}: {SCENES[name].__doc__}")
         with TemporaryDirectory(prefix="cubeling-web-") as folder:
             asyncio.run(SCENES[name](Path(folder)))

@@ -12,7 +12,9 @@ BITS, CELL = 10, 16
 """Bits of the clock, and width of each [px]."""
 
 
-def write_camera(path: Path, scenario: str, seconds: float, *, upright: bool = False) -> int:
+def write_camera(
+    path: Path, scenario: str, seconds: float, *, upright: bool = False, clock: bool = True
+) -> int:
     """Write frames of a bundled recording as .mjpeg; return how many."""
     count = 0
     with open_source(str(bundled_session(scenario))) as frames, path.open("wb") as file:
@@ -22,7 +24,8 @@ def write_camera(path: Path, scenario: str, seconds: float, *, upright: bool = F
             image = frame.image.copy()
             if upright:
                 image = upright_part(image)
-            draw_clock(image, count)
+            if clock:
+                draw_clock(image, count)
             done, data = cv2.imencode(".jpg", image, (cv2.IMWRITE_JPEG_QUALITY, 92))
             assert done
             file.write(data.tobytes())
