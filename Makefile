@@ -94,6 +94,7 @@ check-types: links
 licences:  ## write the table of docs/licences.md again
 	$(PYTHON) -m venv build/licences
 	build/licences/$(notdir $(BIN))/python -m pip install --quiet --constraint constraints.txt --editable ".[align,fbx,plots,sound,study,voice]"
+	build/licences/$(notdir $(BIN))/python -m pip install --quiet --constraint constraints.txt --editable ".[align,fbx,plots,sound,voice,web]"
 	build/licences/$(notdir $(BIN))/python -m tools.licences
 
 audit: .venv/ready-audit  ## ask which versions in constraints.txt have known vulnerabilities

@@ -13,9 +13,8 @@ from cubeling.app.pipeline.scenario import (
     Scenario,
     ScenarioSettings,
 )
-from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.pipeline.table.situation import PLAYER_POSITION, Situation
 from cubeling.app.scenarios.dialogue.scenario import DialogueScenario, dialogue_scenario
-from cubeling.app.scenarios.follow import PLAYER_POSITION
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.rules.scenario import HOME

@@ -8,11 +8,10 @@ from typing import ClassVar
 from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs, Outcome, Reply, ScenarioSettings
-from cubeling.app.pipeline.table.situation import Situation
+from cubeling.app.pipeline.table.situation import PLAYER_POSITION, Situation
 from cubeling.app.scenarios.dialogue.cube_words import CubeWords
 from cubeling.app.scenarios.dialogue.reply_progress import ReplyProgress
 from cubeling.app.scenarios.dialogue.vocabulary import TALK_VOCABULARY
-from cubeling.app.scenarios.follow import PLAYER_POSITION
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.rules.file import USUAL_ACTING_S

@@ -57,7 +57,7 @@ class PageClient:
         self.heard = clock()
         """When it said something last [s]."""
         self._socket, self._limits, self._clock = socket, limits, clock
-        self._messages = RateLimit(limits.messages_per_s)
+        self._messages = RateLimit(limits.messages_per_s, limits.messages_burst_s)
         self._bytes = RateLimit(limits.bytes_per_s)
         self._texts: deque[str] = deque(maxlen=MAX_WAITING)
         self._sounds: deque[bytes] = deque(maxlen=MAX_WAITING)

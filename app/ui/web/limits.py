@@ -29,8 +29,12 @@ class WebLimits:
     text_bytes: int = 1 << 10
     """Size of any other message [B]."""
 
-    messages_per_s: float = 200.0
-    """Messages of a client: a picture, and an answer to each picture and to each sound."""
+    messages_per_s: float = 120.0
+    """Messages of a client: thirty pictures, and an answer to as many, are half of that."""
+
+    messages_burst_s: float = 0.5
+    """It may send those of so many seconds at once [s]: each costs those who play a tenth of a
+    millisecond."""
 
     bytes_per_s: float = 24e6
     """What a client sends [B/s]: thirty pictures a second of 0.8 MB."""
