@@ -6,7 +6,13 @@ from cubeling.app.input_path import check_character, check_input, check_motions
 from cubeling.app.output_path import check_output
 from cubeling.app.pipeline.choices import check_look, check_speed_map, check_turns
 from cubeling.app.session import SessionLabels, SessionOptions, check_codec
-from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT, bundled_lines, read_lines
+from cubeling.app.speaking.lines import (
+    DEFAULT_LANGUAGE,
+    SILENT,
+    WATCHING,
+    bundled_lines,
+    read_lines_for,
+)
 from cubeling.app.ui.output_formats import OUTPUT_SUFFIXES, check_video_codec
 
 
@@ -59,15 +65,17 @@ def check_inputs(options: SessionOptions) -> None:
         check_input(options.source, "video")
     for name in (options.character, *options.others):
         check_character(name)
-    if options.robot.startswith("sim:"):
-        from cubeling.robot import simulator_of
+    for robot in (options.robot, options.second_robot):
+        if robot.startswith("sim:"):
+            from cubeling.robot import simulator_of
 
-        simulator_of(options.robot)  # cheap, and it knows names and faults
+            simulator_of(robot)  # cheap, and it knows names and faults
 
 
 def check_lines(options: SessionOptions) -> None:
     """Refuse lines that there are not, or not in the language that the user has chosen."""
     if options.lines is not None:
-        read_lines(options.lines, options.language or DEFAULT_LANGUAGE)
+        for scenario in (options.scenario, WATCHING):
+            read_lines_for(options.lines, scenario, options.language or DEFAULT_LANGUAGE)
     elif options.language not in (None, SILENT):
         bundled_lines(options.scenario, options.language)

@@ -69,13 +69,14 @@ def read_lines_for(path: Path, scenario: str, language: str) -> ScenarioLines | 
     """Read the lines of a player's .toml file for a scenario; None if nothing is said in it.
 
     What those say that no cube leads is in the tables `[others.LANGUAGE]`; without such tables it
-    is what is bundled.
+    is what is bundled. In a language without one, they are silent.
     """
     if scenario != WATCHING:
         return read_lines(path, language)
-    if "others" not in _content(path):
+    content = _content(path)
+    if "others" not in content:
         return bundled_lines(scenario, language)
-    return read_lines(path, language, "others")
+    return read_lines(path, language, "others") if language in content.table("others") else None
 
 
 def read_lines(path: Path, language: str, speakers: str = "voice") -> ScenarioLines:

@@ -174,3 +174,18 @@ def test_each_player_has_one_robot():
         robots_of(("rex=sim", "rex=sim"), 2)
     with pytest.raises(AppError, match="--players 2"):
         robots_of(("sim", "sim"), 1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--players", "2", "--robot", "rex=sim", "--robot", "rex=sim"), "the name 'rex'"),
+        (("--robot", "sim", "--robot", "sim"), "--players 2 has two"),
+        (("--players", "2", "--robot", "sim", "--robot", "tim=sim:cat"), "sim:cat"),
+    ],
+)
+def test_robots_that_cannot_play_are_refused_in_one_line(cubeling, arguments, said):
+    code, _, err = cubeling("play", "follow", *arguments)
+    assert code == 2
+    assert said in err
+    assert err.count("\n") == 1

@@ -2,6 +2,7 @@
 
 import sys
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
@@ -124,3 +125,16 @@ def test_those_who_watch_say_what_is_bundled_unless_a_file_has_their_lines(tmp_p
     path.write_text("[voice.en]\nidle = 'I'\n[others.en]\nidle = 'You'\n")
     assert read_lines_for(path, WATCHING, "en") == ScenarioLines("en", {"idle": ("You",)})
     assert read_lines_for(path, "companion", "en") == ScenarioLines("en", {"idle": ("I",)})
+    assert read_lines_for(path, WATCHING, "de") is None, "they are silent in it"
+
+
+@pytest.mark.parametrize(
+    ("others", "said"), [("idle = 3", "others.en.idle"), ("idle = ' '", "1 to 300 characters")]
+)
+def test_wrong_lines_of_the_others_are_refused_in_one_line(cubeling, others, said):
+    Path("my.toml").write_text(f"[voice.en]\nidle = 'I'\n[others.en]\n{others}\n")
+    code, _, err = cubeling("play", "follow", "--lines", "my.toml", "--language", "en")
+    assert code == 2
+    assert err.startswith("cubeling: my.toml: ")
+    assert said in err
+    assert err.count("\n") == 1
