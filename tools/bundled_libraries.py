@@ -12,6 +12,7 @@ LICENCES = {
     "espeakng-loader": "**none stated**: its metadata and its wheel name no licence",
     "imgui-bundle": "MIT",
     "kiwisolver": "BSD-3-Clause",
+    "segno": "BSD-3-Clause",
     "lz4": "BSD-3-Clause",
     "matplotlib": "matplotlib's own, after PSF-2.0",
     "opencv-contrib-python-headless": "Apache-2.0",
@@ -96,6 +97,7 @@ LIBRARIES = {
 LINKED = {
     "cffi": {"libffi": "MIT"},
     "contourpy": {"pybind11": "BSD-3-Clause"},
+    "cryptography": {"OpenSSL 4": "Apache-2.0"},
     "dracopy": {"Draco": "Apache-2.0"},
     "imgui-bundle": {
         "Dear ImGui, ImPlot, ImPlot3D, Hello ImGui, node editor, ImmVision, MD4C, MicroTeX": "MIT",

@@ -111,7 +111,8 @@ async function got(data) {
 }
 
 /* The camera up: the newest frame, at most two on their way. */
-const video = $("camera"), grab = document.createElement("canvas"), inFlight = new Map();
+// A canvas of the page encodes when the page is idle; one that is not of it does so at once.
+const video = $("camera"), grab = window.OffscreenCanvas ? new OffscreenCanvas(2, 2) : document.createElement("canvas"), inFlight = new Map();
 let stream, facing = store("localStorage", "facing", () => "environment"), encoding = false, number = 0;
 const sends = () => welcome?.camera && (role === "play" || role === "camera");
 async function camera() {
@@ -143,14 +144,15 @@ function frame(time, meta) {
   if (grab.width !== size[0] || grab.height !== size[1]) [grab.width, grab.height] = size;
   grab.getContext("2d", {alpha: false}).drawImage(video, 0, 0, ...size);
   encoding = true;
-  grab.toBlob(blob => {
+  const jpeg = {type: "image/jpeg", quality: .85};
+  (grab.convertToBlob ? grab.convertToBlob(jpeg) : new Promise(done => grab.toBlob(done, jpeg.type, jpeg.quality))).catch(() => { }).then(blob => {
     encoding = false;
     if (!blob || socket?.readyState !== 1) return;
     const head = new DataView(new ArrayBuffer(16));
     head.setUint8(0, 1); head.setUint32(4, ++number, true); head.setFloat64(8, taken, true);
     inFlight.set(number, now());
     socket.send(new Blob([head.buffer, blob]));
-  }, "image/jpeg", .85);
+  });
 }
 const next = () => video.requestVideoFrameCallback ? video.requestVideoFrameCallback(frame) : requestAnimationFrame(t => frame(t));
 next();
