@@ -1,6 +1,7 @@
 """The screen on pages: what players ask for, other cameras, and pictures for each kind of page."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ class Pages:
     """The server of the pages, as far as a screen sees it."""
 
     def __init__(self):
-        self.wanted = frozenset()
+        self.wanted: frozenset[str] = frozenset()
         self.asked, self.words, self.statuses, self.shown = [], [], [], []
 
     def show(self, picture):
@@ -42,7 +43,8 @@ class Pages:
 @pytest.fixture
 def desk(tmp_path):
     """Yield a screen, its pages, its camera's URI in a list, and its clock in another one."""
-    pages, camera, now = Pages(), [""], [100.0]
+    pages: Any = Pages()
+    camera, now = [""], [100.0]
     screen = WebScreen(pages, lambda: camera[0], tmp_path, clock=lambda: now[0])
     yield SimpleNamespace(screen=screen, pages=pages, camera=camera, now=now, folder=tmp_path)
     screen.close()
