@@ -31,8 +31,8 @@ from cubeling.characters.skeleton.way_round import WayRound
 from cubeling.characters.smoothing import low_pass
 
 LEAVE_S = 0.8
-"""How long a hand takes to go that is not asked for any more [s], times its weight: as long as it
-usually comes, and sits down."""
+"""How long a hand takes to go that is not asked for any more [s], times its weight, but at least
+`BLEND_S`: as long as it usually comes, and sits down."""
 
 BLEND_S = 0.3
 """In which time its weight goes over from one plan to another [s]."""
@@ -116,14 +116,14 @@ class ReachingHand:
             plan, lambda time: np.array([self._wanted_weight(times, time)]), now
         )
         self.weight = min(max(float(asked[0]), 0.0), 1.0)
-        if left is not None and now >= left[0] + LEAVE_S * left[1]:
+        if left is not None and now >= left[0] + max(LEAVE_S * left[1], BLEND_S):
             self.weight, self.intent, self._left = 0.0, None, None
             self._weights = PlannedValues(1, BLEND_S)
 
     def _wanted_weight(self, times: Times, now: float) -> float:
         if self._left is not None:
             since, weight = self._left
-            return weight * (1.0 - ease((now - since) / (LEAVE_S * weight + 1e-9), "gonio"))
+            return weight * (1.0 - ease((now - since) / max(LEAVE_S * weight, BLEND_S), "gonio"))
         since, before = self._joined
         begin, ready = max(times.start, since), times.ready
         if since > times.start:  # it joins in late, or comes from another place
