@@ -7,7 +7,7 @@ import numpy as np
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import distinct_names
-from cubeling.app.pipeline.step import PlayerStep
+from cubeling.app.pipeline.step import PlayerStep, ReplayInputs
 from cubeling.app.pipeline.table.obstacles import Obstacles
 from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.tracking import (
@@ -54,10 +54,17 @@ class CubePlayer:
         """Compute what the hand does with the cube."""
         return self._gestures.update(state)
 
-    def play(self, frame: Frame, markers: FrameMarkers, first: CubeControls) -> PlayerStep:
-        """Find the cube, and tell what the hand does with it on the table of the `first` player."""
-        state = self.tracked.track(frame, markers)
-        controls = on_table_of(first, self.gesture(state))
+    def play(
+        self, frame: Frame, markers: FrameMarkers, first: CubeControls, recorded: ReplayInputs
+    ) -> PlayerStep:
+        """Find the cube, and tell what the hand does with it on the table of the `first` player.
+
+        What is recorded of that is taken instead.
+        """
+        topic = f"/cubes/{self.name}"
+        state = recorded.further.get(f"{topic}/state") or self.tracked.track(frame, markers)
+        controls = recorded.further.get(f"{topic}/controls")
+        controls = controls or on_table_of(first, self.gesture(state))
         return PlayerStep(self.name, state, controls, self.cube.edge, self.robot)
 
 

@@ -305,7 +305,7 @@ class Playground:
         self.sight.follow(state, self.cube)
         self._lap("tracking")
         controls = replay.controls or first.gesture(state)
-        played = [each.play(frame, markers, controls) for each in further if markers is not None]
+        played = [each.play(frame, markers, controls, replay) for each in further if markers]
         self._lap("gestures")
         appearance = replay.appearance
         if appearance is None and (drawn if measured is None else measured):

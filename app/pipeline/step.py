@@ -1,7 +1,9 @@
 """The result of one frame, and what a replay may provide instead of computing it."""
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -200,9 +202,17 @@ class ReplayInputs:
     posed: PosedCharacter | None = None
     """The character; None to animate it."""
 
-    def pose_for(self, character: Character) -> PosedCharacter | None:
-        """Return the recorded pose for today's character, which may have got more morphs."""
-        posed, count = self.posed, len(character.morphs)
+    further: Mapping[str, Any] = field(default_factory=dict)
+    """The same of further players and characters, by their topics in a recording."""
+
+    def command_of(self, name: str) -> CharacterCommand | None:
+        """Return the recorded command of one of the cast, by its name as `Lines` have it."""
+        return self.further.get(f"/cast/{name}/command") if name else self.command
+
+    def pose_of(self, name: str, character: Character) -> PosedCharacter | None:
+        """Return its recorded pose, for today's character, which may have got more morphs."""
+        posed = self.further.get(f"/cast/{name}/pose") if name else self.posed
+        count = len(character.morphs)
         morphs = None if posed is None else posed.pose.morphs
         if posed is None or morphs is None or len(morphs) >= count:
             return posed

@@ -118,8 +118,6 @@ def open_session(
     own = scenario_cube(options.scenario)
     in_play = [*cubes, *map(CubeModel.load, (own, f"{own}{SECOND}")[len(cubes) :])]
     cube, *further_cubes = in_play[: options.players]
-    if further_cubes and options.stage != "camera":
-        raise AppError("a session of several players is replayed from its camera: leave out --from")
     scenario = scenario_of(options, options.scenario, cube)
     character, *others = (
         load_to_play(

@@ -135,6 +135,18 @@ def decode_sound(data: bytes) -> Samples:
     return np.frombuffer(data, "<i2").astype(np.float32) / np.float32(_FULL_SCALE)
 
 
+def decode_sound_message(data: bytes) -> tuple[int, Samples]:
+    """Return sample rate [Hz] and sound of a message; raises ValueError for another one."""
+    from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
+    from google.protobuf.message import DecodeError
+
+    try:
+        audio = RawAudio.FromString(data)
+    except DecodeError as error:
+        raise ValueError(error) from None
+    return audio.sample_rate, decode_sound(audio.data)
+
+
 def upgrade(topic: str, document: bytes) -> bytes:
     """Return a channel's document as this version writes it, whichever version wrote it.
 

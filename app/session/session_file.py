@@ -20,7 +20,6 @@ from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.spoken_line import Lines, SpokenLine
 from cubeling.app.session.encoding import (
     APPEARANCE_TOPIC,
-    CHANNEL_TYPES,
     CLOCK_RECORD,
     CLOCK_ZERO,
     FORMAT_KEY,
@@ -32,7 +31,7 @@ from cubeling.app.session.encoding import (
     SESSION_FORMAT,
     SESSION_RECORD,
     decode,
-    decode_sound,
+    decode_sound_message,
     line_topic,
     message_type,
 )
@@ -49,7 +48,6 @@ from cubeling.app.session.labels import (
 )
 from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
 from cubeling.characters import CharacterCommand, SpeechIntent
-from cubeling.characters.speech import Samples
 
 START_OVER_EVENT = "start over"
 """Event of a player who starts over."""
@@ -297,7 +295,7 @@ class SessionFile:
             if (topic, time) in said:
                 name, speech = said[topic, time]
                 with self._named_message(topic, time):
-                    rate, sound = _sound_of(data)
+                    rate, sound = decode_sound_message(data)
                 line = SpokenLine(speech.utterance, sound, rate, speech.profile)
                 lines.setdefault(time, {})[name] = line
         return dict(lines)
@@ -319,9 +317,19 @@ class SessionFile:
         return self._replay_inputs(topics)
 
     def _replay_inputs(self, topics: tuple[str, ...]) -> Iterator[ReplayInputs]:
-        kinds = {topic: CHANNEL_TYPES[topic] for topic in topics}
+        parts = {topic.rpartition("/")[2] for topic in topics}
+        further = [
+            topic
+            for topic in self.channels
+            if topic.startswith(("/cast/", "/cubes/")) and topic.rpartition("/")[2] in parts
+        ]
+        kinds = {topic: message_type(topic) or object for topic in (*topics, *further)}
         for _, found in groupby(self.decode_messages(kinds), key=itemgetter(1)):
-            yield ReplayInputs(**{FIELD_OF_TOPIC[topic]: message for topic, _, message in found})
+            of_frame = {topic: message for topic, _, message in found}
+            first = {
+                FIELD_OF_TOPIC[topic]: of_frame.pop(topic) for topic in topics if topic in of_frame
+            }
+            yield ReplayInputs(**first, further=of_frame)
 
     def _older_inputs(self) -> dict[float, RecordedInputs]:
         happened = set(self.events)
@@ -377,18 +385,6 @@ class SessionFile:
             f"the session '{self.path}' was cut off: {quantity(frames, 'frame')} ({seconds:.1f} s) "
             "can be played with --salvage"
         )
-
-
-def _sound_of(data: bytes) -> tuple[int, Samples]:
-    """Return sample rate [Hz] and sound of a message; raises ValueError for another one."""
-    from foxglove_schemas_protobuf.RawAudio_pb2 import RawAudio
-    from google.protobuf.message import DecodeError
-
-    try:
-        audio = RawAudio.FromString(data)
-    except DecodeError as error:
-        raise ValueError(error) from None
-    return audio.sample_rate, decode_sound(audio.data)
 
 
 def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:

@@ -10,6 +10,7 @@ from cubeling.app.pipeline.scenario import Inputs, Outcome
 from cubeling.app.pipeline.step import Performance, ReplayInputs
 from cubeling.app.pipeline.table.attention import ALONE, Company
 from cubeling.app.pipeline.table.situation import SeenCube
+from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.characters import Obstacle, TableView
 
 
@@ -66,8 +67,8 @@ class Cast:
     ) -> tuple[Performance, ...]:
         """Advance to the time of a frame, and return what each does; see `CastMember.command`.
 
-        `things` are in the way of all, and so is each of the others. The first takes a recorded
-        command or pose, if there is one.
+        `things` are in the way of all, and so is each of the others. Recorded commands and poses
+        take the place of those that would be computed.
         """
         performances = []
         for number, (member, own) in enumerate(zip(self.members, told, strict=True)):
@@ -80,11 +81,9 @@ class Cast:
                 view,
                 self._company(number),
             )
-            pose = None
-            if number == 0:
-                command = recorded.command or command
-                pose = recorded.pose_for(member.character)
-            member.perform(command, pose)
+            name = member.name if number else LEAD
+            command = recorded.command_of(name) or command
+            member.perform(command, recorded.pose_of(name, member.character))
             performances.append(member.performance(replace(decisions[number], command=command)))
         return tuple(performances)
 

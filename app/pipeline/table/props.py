@@ -148,6 +148,8 @@ class PosedBody:
     @property
     def bounds(self) -> Point:
         """A box around it as it stands now, lowest and highest corner (2, 3), in its frame [m]."""
+        if len(self.posed.pose.rotations) != len(self.character.skeleton.parents):
+            return self.character.bounds  # an older session has a pose of another skeleton
         return _box(self._joints[:, :3, 3]) + self.parts.margins
 
     @property
