@@ -34,7 +34,6 @@ from cubeling.characters.rendering import (
 )
 from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB
 from tests.bench.picture import SIZE, scene
-from tests.characters.rendering.watch import WatchPass
 
 RICH = QUALITIES["rich"]
 
@@ -115,32 +114,6 @@ def time_table(name: str, found: dict[str, float]) -> Table:
     return table
 
 
-def skin_table(context: moderngl.Context, view: CameraView, actor: SceneCharacter) -> Table:
-    """Return how near adaptive scattering is to the full one, and the taps that it saves."""
-    seen = []
-    for effects in (set(Effect) - {Effect.AMBIENT_OCCLUSION}, set(Effect)):
-        stage = Stage(context, SIZE)
-        stage.quality = only(*sorted(effects))
-        watch = WatchPass()
-        stage.passes.append(watch)
-        stage.draw(view, [actor])
-        seen.append((watch.skin, watch.scattered))
-        stage.release()
-    (skin, full), (_, adaptive) = seen
-    table = Table(title="adaptive skin against the full filter")
-    for heading in ("texels of skin", "PSNR (dB), target ≥ 35", "taps saved, target ≥ 40 %"):
-        table.add_column(heading, justify="right")
-    if not skin.any():
-        table.add_row("0", "", "")
-        return table
-    light, found = (each[skin] for each in (full, adaptive))
-    # As in the picture: encoded, where 1 is white.
-    a, b = (np.clip(each[:, :3], 0.0, 1.0) ** (1.0 / 2.2) for each in (light, found))
-    psnr = -10.0 * np.log10(max(float(((a - b) ** 2).mean()), 1e-12))
-    table.add_row(f"{skin.sum()}", f"{psnr:.1f}", f"{1.0 - found[:, 3].mean():.0%}")
-    return table
-
-
 def lens_table(
     context: moderngl.Context, view: CameraView, actors: Sequence[SceneCharacter]
 ) -> Table:
@@ -197,7 +170,6 @@ def main() -> None:
     focused = replace(view, focus=WEBCAM)
     console.print(time_table("on the table", times(context, focused, actors, qualities)))
     console.print(time_table("close up", times(context, near, actors, qualities)))
-    console.print(skin_table(context, near, actors[0]))
     spread = [_moved(actors[0], place) for place in ((-0.12, 0.12), (0.0, 0.0), (0.12, -0.15))]
     console.print(lens_table(context, view, spread))
     context.release()

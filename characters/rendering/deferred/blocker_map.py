@@ -19,6 +19,9 @@ BLOCKER_UNIT = 9
 FREE_M = 1e3
 """Distance in the map where nothing blocks the light [m]."""
 
+NO_ENTRY = 1e9
+"""What the map says where light comes to no surface, see `entries.glsl`."""
+
 CHARACTER_RANGE_TEXELS = (3.0, 6.0)
 """Distances behind a surface from which on it shadows a character, and shadows it completely, in
 texels of the map: less is rounding, as the map has one distance for a whole texel."""
@@ -38,7 +41,8 @@ class BlockerMap:
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
         self.texture = context.texture((MAP_SIDE, MAP_SIDE), 4, dtype="f4")
-        """Distance of the nearest surface that blocks red, green and blue from the lamp [m]."""
+        """Distance of the nearest surface that blocks red, green and blue from the lamp [m], and
+        where light first comes to a surface, see `entries.glsl`."""
         self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
         self._target = context.framebuffer([self.texture])
         self._lamp: Lamp | None = None
@@ -48,11 +52,10 @@ class BlockerMap:
         self._lamp = lamp
         context = self._context
         self._target.use()
-        self._target.clear(FREE_M, FREE_M, FREE_M, FREE_M)
+        self._target.clear(FREE_M, FREE_M, FREE_M, NO_ENTRY)
         context.enable_only(moderngl.BLEND)
         context.blend_equation = moderngl.MIN, moderngl.MIN
-        # Faces that look away from the lamp are drawn: what it lights does not shadow itself.
-        context.front_face, context.cull_face = "cw", "front"
+        context.front_face = "cw"
         for character in characters:
             character.skinned.render(
                 context,
@@ -61,7 +64,7 @@ class BlockerMap:
                 lamp_axis=lamp.lamp_from_table[2],
             )
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
-        context.front_face, context.cull_face = "ccw", "back"
+        context.front_face = "ccw"
 
     def set_uniforms(
         self,

@@ -16,6 +16,7 @@ from cubeling.characters.rendering.geometry.face_texture import FaceTexture
 from cubeling.characters.rendering.geometry.morph_mixer import MorphMixer
 from cubeling.characters.rendering.geometry.surfaces import (
     BEHIND,
+    CASTER,
     VERTEX_LIT,
     Surface,
     SurfaceBuffers,
@@ -175,7 +176,7 @@ class SkinnedCharacter:
                 prepared.add(array.program.glo)
                 set_uniforms(array.program, **uniforms)
             set_uniforms(array.program, surface_id=float(number))
-            surface.render(context, array, both_sides=BEHIND in features)
+            surface.render(context, array, both_sides=bool(features & {BEHIND, CASTER}))
 
     def show_face(
         self, morphs: Array | None, blood: float, table_from_character: Array, pixel: float

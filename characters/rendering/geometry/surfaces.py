@@ -107,6 +107,7 @@ class Surface:
                 glow=material.emissive,
                 screen_layer=self.screen_layer,
             )
+        set_uniforms(array.program, two_sided=material.double_sided)
         if material.toon is not None:
             set_uniforms(
                 array.program,
@@ -275,7 +276,7 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     """
     if not features & {GEOMETRY, CASTER, BEHIND}:
         features -= {BLENDED}
-    if GEOMETRY not in features:
+    if not features & {GEOMETRY, CASTER}:
         features -= {SKIN_FEATURE}
     if VERTEX_LIT in features:
         return programs.load("vertex_lit", "vertex_lit", *sorted(features & {"GLOW", CLIPPED}))

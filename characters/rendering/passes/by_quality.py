@@ -60,11 +60,13 @@ def _deferred_shading(
     if blockers is not None:
         visibility = DeferredVisibilityPass(context, programs, blockers)
     composite = DeferredCompositePass(context, programs)
+    scattering = Effect.SKIN_SCATTERING in effects
     finding = [each for each in (occlusion, visibility) if each is not None]
     passes: list[RenderPass] = [DeferredGeometryPass(), *finding]
-    passes.append(DeferredLightingPass(context, programs, visibility, occlusion))
-    if Effect.SKIN_SCATTERING in effects:
-        passes.append(DeferredScatteringPass(context, programs, adaptive=occlusion is not None))
+    passes.append(DeferredLightingPass(context, programs, visibility, occlusion, scattering))
+    if scattering:
+        adaptive = occlusion is not None
+        passes.append(DeferredScatteringPass(context, programs, adaptive, blockers))
     if Effect.DEPTH_OF_FIELD in effects:
         return [*passes, DepthOfFieldPass(context, programs, composite)]
     return [*passes, composite]

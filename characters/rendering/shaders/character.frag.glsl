@@ -26,9 +26,11 @@ void main() {
 }
 #else
 #ifdef CASTER
+#include "entries"
 uniform vec4 lamp_axis;     // of the table frame: distance from the lamp
+uniform bool two_sided;
 
-out vec4 blocked;           // nearest distance for red, green and blue [m]
+out vec4 blocked;           // nearest distance for red, green and blue [m], and where light comes to a surface
 
 void main() {
     vec3 albedo = surface_albedo();
@@ -39,7 +41,13 @@ void main() {
     vec3 passing = (1.0 - surface_alpha) + min(surface_alpha, 1.0 - surface_alpha) * albedo;
     blocking = vec3(lessThan(vec3(screen_door()), 1.0 - passing));
 #endif
-    blocked = vec4(mix(vec3(1e3), vec3(away), blocking), 0.0);
+    // Faces that look away from the lamp block it: what it lights does not shadow itself.
+    bool skin = false;
+#ifdef SKIN
+    skin = any(notEqual(where, vec2(0.0)));
+#endif
+    blocked = vec4(mix(vec3(1e3), vec3(away), blocking), gl_FrontFacing ? entry_of(away, skin) : 1e9);
+    if (gl_FrontFacing && !two_sided) blocked.rgb = vec3(1e3);
 }
 #else
 #ifdef GEOMETRY

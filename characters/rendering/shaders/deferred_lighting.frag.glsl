@@ -59,5 +59,9 @@ void main() {
     specular = vec4(visible * light.specular + glow_height.rgb, 1.0);
     ambient = open * vec4(light.ambient, 1.0);
     bool skin = toon.x < 0.5 && shade.r > 0.5;
-    falling = skin ? vec4(visible * key * wrapped(dot(n.xyz, to_light)), 1.0) : vec4(0.0);
+    falling = skin ? vec4(visible * key * max(dot(n.xyz, to_light), 0.0), 1.0) : vec4(0.0);
+#ifdef SCATTERED
+    // Skin is not wrapped: what light does around the terminator is found by scattering it.
+    if (skin) diffuse.rgb = falling.rgb * albedo.rgb;
+#endif
 }

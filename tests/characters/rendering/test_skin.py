@@ -51,7 +51,8 @@ def test_light_at_the_edge_of_a_shadow_is_kept_but_spread(scattered):
     assert after.mean(axis=0) == pytest.approx(before.mean(axis=0), rel=0.01)
     spread = np.abs(after - before).mean(axis=0) / before.mean(axis=0)
     assert spread[0] > 0.005
-    assert spread[0] > 2 * spread[1] > 10 * spread[2]  # red light goes furthest
+    # Red light goes furthest: root mean squares of 3.3, 1.6 and 0.9 mm in skin of scale 1.
+    assert spread[0] > 1.7 * spread[1] > 1.7 * 1.5 * spread[2]
 
 
 def test_light_does_not_cross_to_a_surface_behind(scattered):
@@ -84,7 +85,8 @@ def test_what_is_not_skin_is_not_touched(scattered):
 
 @pytest.mark.full
 def test_open_skin_is_filtered_with_fewer_taps(scattered):
-    shapes = (plate(DEEP, side=0.2), ball(DEEP), ball(DEEP, (0.07, 0.03, 0.02), 0.03))
+    soft = replace(SKIN, scattering=2.0)
+    shapes = (plate(soft, side=0.2), ball(soft), ball(soft, (0.07, 0.03, 0.02), 0.03))
     whole = scattered(*shapes, shadows=True)
     adaptive = scattered(*shapes, shadows=True, adaptive=True)
     skin = whole.skin

@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.rendering.deferred.buffers import LightBuffer
+from cubeling.characters.rendering.deferred.buffers import GeometryBuffer, LightBuffer
 from cubeling.characters.rendering.passes.render_pass import RenderPass
 from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
@@ -24,6 +24,7 @@ class WatchPass(RenderPass):
         """Keep them."""
         self.frame = frame
         self._light: LightBuffer = layer.target.light
+        self._geometry: GeometryBuffer = layer.target.geometry
 
     @cached_property
     def diffuse(self) -> Texels:
@@ -40,7 +41,33 @@ class WatchPass(RenderPass):
         """Where skin is, (height, width)."""
         return np.asarray(_texels(self._light.falling)[..., 3] > 0.5)
 
+    @property
+    def is_scattered(self) -> bool:
+        """Whether light was scattered."""
+        return self._light.is_scattered
 
-def _texels(texture: moderngl.Texture) -> Texels:
-    rows = np.frombuffer(texture.read(), np.float16)
+    @cached_property
+    def rest(self) -> Texels:
+        """Highlights and light from all around, (height, width, 3)."""
+        return (_texels(self._light.specular) + _texels(self._light.ambient))[..., :3]
+
+    @cached_property
+    def position(self) -> Texels:
+        """Position in the camera frame [m], and a number, (height, width, 4)."""
+        return _texels(self._geometry.position, np.float32)
+
+    @cached_property
+    def albedo(self) -> Texels:
+        """Linear RGB of the surface, (height, width, 3)."""
+        return _texels(self._geometry.albedo_rough)[..., :3]
+
+    @cached_property
+    def is_skin(self) -> NDArray[np.bool_]:
+        """Where skin is, whatever became of its light, (height, width)."""
+        seen = _texels(self._geometry.normal_id)[..., 3] > 0.5
+        return np.asarray(seen & (_texels(self._geometry.shade_metal)[..., 0] > 0.5))
+
+
+def _texels(texture: moderngl.Texture, kind: type = np.float16) -> Texels:
+    rows = np.frombuffer(texture.read(), kind)
     return rows.reshape(texture.height, texture.width, 4).astype(float)

@@ -20,7 +20,8 @@ class DeferredLightingPass(RenderPass):
     """Lights the geometry buffer (pass 2 of deferred shading): diffuse, specular and ambient.
 
     `visibility` says how much of the lamp's light arrives; None: all of it. `occlusion` says it of
-    the light from all around; None: all of it, but less near the table.
+    the light from all around; None: all of it, but less near the table. `scattering` says that a
+    later pass spreads the light on skin.
     """
 
     def __init__(
@@ -29,9 +30,11 @@ class DeferredLightingPass(RenderPass):
         programs: ShaderPrograms,
         visibility: DeferredVisibilityPass | None,
         occlusion: DeferredOcclusionPass | None,
+        scattering: bool,
     ) -> None:
         self._visibility, self._occlusion = visibility, occlusion
         features = [*["VISIBILITY"] * bool(visibility), *["OCCLUDED"] * bool(occlusion)]
+        features += ["SCATTERED"] * scattering
         self._triangle = buffer_triangle(context, programs, "deferred_lighting", *features)
         self._records = context.texture((3, MAX_SURFACES), 4, dtype="f4")
         self._records.filter = moderngl.NEAREST, moderngl.NEAREST

@@ -3,49 +3,68 @@
 import moderngl
 import numpy as np
 
+from cubeling.characters.rendering.deferred.blocker_map import CHARACTER_RANGE_TEXELS, BlockerMap
 from cubeling.characters.rendering.deferred.buffers import buffer_triangle
 from cubeling.characters.rendering.passes.render_pass import RenderPass
 from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
 from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
-LEVEL_RADII_M = (0.0023, 0.0053, 0.0103)
-"""Radii of the levels in human skin [m]. A Wendland function of a radius of 3.8 standard deviations
-spreads as a Gaussian does; these stand for the four wider ones of d'Eon and Luebke ("Advanced
-techniques for realistic real-time skin rendering", GPU Gems 3, 2007), the first for two."""
+LEVEL_RADII_M = (0.00121, 0.00437, 0.01328)
+"""Radii of the levels in human skin [m]. What walks through the skin of an arm find at a distance
+(`tools/ray_tracing/subsurface.py`; Jensen et al., "A practical model for subsurface light
+transport", 2001, skin 1), as a sum of three Wendland functions, to 0.8 % of the light."""
 
-LEVEL_SHARES = ((0.231, 0.205, 0.007), (0.358, 0.004, 0.0), (0.078, 0.0, 0.0))
+LEVEL_SHARES = ((0.210, 0.384, 0.577), (0.415, 0.458, 0.258), (0.324, 0.065, 0.0))
 """Share of each level in red, green and blue light, from the same fit."""
 
 UNSCATTERED = tuple(1.0 - sum(shares) for shares in zip(*LEVEL_SHARES, strict=True))
-"""Share of the light that leaves where it enters: the two narrowest Gaussians of the fit."""
+"""Share of the light that leaves where it enters."""
 
-LEVEL_DEPTH = 0.6
-"""Difference in depth at which a level ends, as a share of its radius."""
+THIN_SHARE = (1.18, 2.15, 3.58)
+THROUGH_LENGTHS_M = (0.00346, 0.00145, 0.00077)
+"""Light that comes through a layer of this skin: it falls with the way as an exponential function,
+of the light that flat skin would reflect."""
 
-OPEN_LIMITS = (0.7, 0.9)
-"""Open share of the light from all around below which all levels count, and above which none."""
+OPEN_LIMITS = (0.5, 0.7)
+"""Open shares of the light from all around in a fold, and on open skin."""
+
+BEND_LIMITS, PROBE_REACH = (0.015, 0.04), 0.4
+"""How far the mean of two opposite points within this share of the widest level differs from the
+light between them on open skin, as a share of the key light, from which on it is filtered, and
+completely; in folds, less is enough."""
 
 MIN_REACH_TEXELS = 1.0
 """Levels that reach less far are not seen: the light is left as it is."""
 
 
 class DeferredScatteringPass(RenderPass):
-    """Scatters the diffuse light of skin; if `adaptive`, with fewer taps where skin is open.
+    """Scatters the diffuse light of skin; if `adaptive`, only in folds and where light bends.
 
-    The adaptive form needs ambient occlusion, which is part of the ambient light.
+    The adaptive form needs ambient occlusion, which is part of the ambient light. `blockers` knows
+    where light comes in behind ears and fingers; None: it does not come through.
     """
 
-    def __init__(self, context: moderngl.Context, programs: ShaderPrograms, adaptive: bool) -> None:
-        features = ("ADAPTIVE",) if adaptive else ()
+    def __init__(
+        self,
+        context: moderngl.Context,
+        programs: ShaderPrograms,
+        adaptive: bool,
+        blockers: BlockerMap | None,
+    ) -> None:
+        self._blockers = blockers
+        features = [*["ADAPTIVE"] * adaptive, *["THROUGH"] * (blockers is not None)]
         self._triangle = buffer_triangle(context, programs, "deferred_scattering", *features)
         self.owned = (self._triangle,)
         set_uniforms(
             self._triangle.program,
             level_radius=LEVEL_RADII_M,
-            level_depth=LEVEL_DEPTH,
             unscattered=UNSCATTERED,
             level_share=np.array(LEVEL_SHARES),
             open_limits=OPEN_LIMITS,
+            bend_limits=BEND_LIMITS,
+            probe_reach=PROBE_REACH,
+            thin_share=THIN_SHARE,
+            through_length=THROUGH_LENGTHS_M,
         )
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
@@ -60,7 +79,14 @@ class DeferredScatteringPass(RenderPass):
         set_uniforms(
             self._triangle.program,
             focal=float(target.fineness * frame.camera_matrix[1, 1]),
+            key=frame.light.key,
+            to_light=frame.camera_from_table[:3, :3] @ frame.light.to_light,
         )
+        if self._blockers is not None:
+            table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
+            self._blockers.set_uniforms(
+                self._triangle.program, table_from_camera, CHARACTER_RANGE_TEXELS
+            )
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
         target.light.is_scattered = True
 
