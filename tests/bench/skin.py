@@ -14,6 +14,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import moderngl
@@ -70,7 +71,7 @@ KINDS = {
 LIGHTS = {"side": (0.85, 0.62, 0.1), "behind": (0.35, 0.6, -0.75)}
 """Directions to the key light in the table frame."""
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating[Any]]
 
 
 @dataclass
@@ -92,7 +93,7 @@ class Head:
     actor: SceneCharacter
     triangles: Triangles
     """In the table frame."""
-    points: Floats
+    points: NDArray[np.float64]
     """Around what fills the picture, (n, 3) in the table frame."""
     scale: float
     """How much further light goes than in the skin of a human of life size."""
@@ -133,8 +134,8 @@ def scanned_head(path: Path) -> Head:
     colors = path.with_name("Map-COL.jpg")
     skin = Material(base_color=(0.55, 0.36, 0.28, 1.0), roughness=0.5, scattering=1.0)
     if colors.exists():
-        texture = cv2.cvtColor(cv2.imread(str(colors)), cv2.COLOR_BGR2RGB)
-        skin = replace(skin, base_color=(1.0,) * 4, base_color_texture=np.asarray(texture))
+        texture = np.asarray(cv2.imread(str(colors)), np.uint8)[..., ::-1]
+        skin = replace(skin, base_color=(1.0,) * 4, base_color_texture=texture)
     shape = mesh(
         positions,
         read(primitive["attributes"]["NORMAL"]),
@@ -231,13 +232,13 @@ def trace(head: Head, eye: Floats, points: Floats, light: Light, walks: int) -> 
     hits = tracer.hits(np.tile(eye, (len(points), 1)).astype("f4"), ways.astype("f4"))
     flat = tracer.flat_normals(hits.triangles)
     flat *= -np.sign(np.einsum("ij,ij->i", flat, ways))[:, None]
-    points = (eye + hits.distances[:, None] * ways).astype("f4")
+    origins = (eye + hits.distances[:, None] * ways).astype("f4")
 
-    def normals(numbers: NDArray[np.int32], barycentric: Floats) -> Floats:
+    def normals(numbers: NDArray[np.integer[Any]], barycentric: Floats) -> Floats:
         u, v = barycentric.T
         weights = np.stack([1.0 - u - v, u, v], axis=1)
         smooth = np.einsum("nk,nkc->nc", weights, triangles.normals[triangles.corners[numbers]])
-        return smooth / np.linalg.norm(smooth, axis=1, keepdims=True)
+        return np.asarray(smooth / np.linalg.norm(smooth, axis=1, keepdims=True))
 
     def falling(places: Floats, smooth: Floats) -> Floats:
         toward = rng.random((len(places), 2)) @ lamp.sides + lamp.corner - places
@@ -255,7 +256,7 @@ def trace(head: Head, eye: Floats, points: Floats, light: Light, walks: int) -> 
         scattering = SKIN.scattering[color] / head.scale
         absorption = SKIN.absorption[color] / head.scale
         for _ in range(walks):
-            exits = walk(tracer, points, -flat, scattering, absorption, rng)
+            exits = walk(tracer, origins, -flat, scattering, absorption, rng)
             arriving = falling(exits.points, normals(exits.triangles, exits.barycentric))
             found[:, color] += np.bincount(exits.starts, arriving, minlength=len(points))
         found[:, color] /= walks * flat_reflectance(scattering, absorption)

@@ -14,6 +14,7 @@ from tools.ray_tracing import (
     wendland,
 )
 from tools.ray_tracing.mesh import Floats
+from tools.ray_tracing.subsurface import flat_reflectance, walk
 
 pytestmark = pytest.mark.full
 
@@ -121,3 +122,19 @@ def test_light_takes_the_colours_of_all_panes_that_it_passes():
     half = Pane(np.array([-2.0, 0.5, -2.0]), np.array([[2.0, 0, 0], [0, 0, 4.0]]), (0.5, 1.0, 1.0))
     found = light_fraction(tracer, np.zeros((1, 3), np.float32), light, [red, half])
     np.testing.assert_allclose(found[0], [0.8 * 0.75, 0.2, 0.1], atol=0.01)
+
+
+def test_walks_in_a_thick_ball_come_out_as_from_flat_skin():
+    mesh = sphere((0.0, 0.0, 0.0), 0.05)
+    tracer = RayTracer(mesh)
+    outward = tracer.flat_normals(np.arange(len(mesh.corners), dtype=np.int32))
+    middles = mesh.positions[mesh.corners].mean(axis=1)
+    outward *= np.sign(np.einsum("ij,ij->i", outward, middles))[:, None]
+    real = np.linalg.norm(outward, axis=1) > 0.5  # not so at the poles
+    middles, outward = middles[real], outward[real]
+    rng = np.random.default_rng(3)
+    exits = [walk(tracer, middles, -outward, 880.0, 170.0, rng) for _ in range(20)]
+    share = sum(len(each.starts) for each in exits) / (20 * len(middles))
+    assert share == pytest.approx(flat_reflectance(880.0, 170.0), rel=0.02)
+    away = np.concatenate([np.linalg.norm(e.points - middles[e.starts], axis=1) for e in exits])
+    assert np.sqrt((away**2).mean()) == pytest.approx(1.6e-3, rel=0.1)  # as on flat skin

@@ -5,13 +5,14 @@ scatters until it is absorbed or comes to the surface, where light falls in that
 the flat, evenly lit skin reflects is 1, so that its colours stay a matter of the surface.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tools.ray_tracing.ambient import tangents
-from tools.ray_tracing.mesh import Array, Floats
+from tools.ray_tracing.mesh import Floats
 from tools.ray_tracing.tracer import RayTracer
 
 MAX_STEPS = 400
@@ -31,34 +32,25 @@ class Medium:
     absorption: tuple[float, float, float]
     """Absorption coefficients [1/m]."""
 
-    def scaled(self, scale: float) -> "Medium":
-        """Return a medium in which light goes `scale` times as far."""
-        red, green, blue = (each / scale for each in self.scattering)
-        absorbed = self.absorption
-        return Medium(
-            (red, green, blue), (absorbed[0] / scale, absorbed[1] / scale, absorbed[2] / scale)
-        )
-
 
 SKIN = Medium((740.0, 880.0, 1010.0), (32.0, 170.0, 480.0))
 """Skin of an arm (Jensen, Marschner, Levoy and Hanrahan, "A practical model for subsurface light
 transport", 2001, figure 5, skin 1)."""
 
-Falling = Callable[[Floats, Floats], Array]
-"""Returns the light that falls on points (n, 3) of triangles (n,) of the mesh, (n,)."""
+Numbers = NDArray[np.integer[Any]]
 
 
 @dataclass(frozen=True)
 class Exits:
     """Where walks came to the surface."""
 
-    starts: Array
+    starts: Numbers
     """Number of the point where each began, (exits,)."""
 
     points: Floats
     """(exits, 3) [m], a little outside."""
 
-    triangles: Array
+    triangles: Numbers
     """(exits,)."""
 
     barycentric: Floats
@@ -82,7 +74,7 @@ def walk(
     starts = np.arange(len(points))
     directions = _cosine(inward, rng)
     places = points + lift * inward
-    found: list[tuple[Array, Floats, Array, Floats]] = []
+    found: list[tuple[Numbers, Floats, Numbers, Floats]] = []
     for _ in range(MAX_STEPS):
         if not len(starts):
             break
@@ -109,13 +101,15 @@ def flat_reflectance(scattering: float, absorption: float, walks: int = 200_000)
     return len(flat_exits(scattering, absorption, walks)) / walks
 
 
-def flat_exits(scattering: float, absorption: float, walks: int, seed: int = 0) -> Array:
+def flat_exits(scattering: float, absorption: float, walks: int, seed: int = 0) -> Floats:
     """Return how far from where it fell in light leaves flat skin, (exits,) [m]."""
     rng = np.random.default_rng(seed)
     extinction = scattering + absorption
     places = np.zeros((walks, 3))
-    directions = _cosine(np.tile(np.float32([0.0, 0.0, 1.0]), (walks, 1)), rng).astype(float)
-    distances = []
+    directions = _cosine(np.tile(np.array([0.0, 0.0, 1.0], np.float32), (walks, 1)), rng).astype(
+        float
+    )
+    distances: list[Floats] = []
     for _ in range(20 * MAX_STEPS):
         if not len(places):
             break
@@ -123,7 +117,7 @@ def flat_exits(scattering: float, absorption: float, walks: int, seed: int = 0) 
         out = ends[:, 2] < 0.0
         share = places[out, 2] / (places[out, 2] - ends[out, 2])
         surface = places[out] + share[:, None] * (ends[out] - places[out])
-        distances.append(np.hypot(surface[:, 0], surface[:, 1]))
+        distances.append(np.hypot(surface[:, 0], surface[:, 1]).astype(np.float32))
         goes_on = ~out & (rng.random(len(places)) < scattering / extinction)
         places = ends[goes_on]
         directions = _isotropic(len(places), rng).astype(float)

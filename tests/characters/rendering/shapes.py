@@ -52,7 +52,7 @@ def ball(material: Material, at=(0.0, 0.06, 0.0), radius=0.06, rings=48):
     row, column = np.divmod(np.arange(2 * rings * rings), rings)
     corner = row * (rings + 1) + column
     quads = np.stack([corner, corner + rings + 1, corner + rings + 2, corner + 1], axis=-1)
-    triangles = np.concatenate([quads[:, [0, 2, 1]], quads[:, [0, 3, 2]]])
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
     return mesh(radius * out + at, out, triangles, material)
 
 

@@ -94,3 +94,17 @@ def test_open_skin_is_filtered_with_fewer_taps(scattered):
     assert adaptive.scattered[skin][:, 3].mean() <= 0.6
     error = (adaptive.scattered - whole.scattered)[skin][:, :3]
     assert 10.0 * np.log10(whole.scattered[skin][:, :3].max() ** 2 / (error**2).mean()) >= 35.0
+
+
+def test_light_from_behind_reddens_thin_skin_and_not_thick(scattered):
+    """A ball is dark where it turns away from the lamp, unless light goes as far as it is wide."""
+
+    def shade(scattering):
+        found = scattered(ball(replace(SKIN, scattering=scattering), radius=0.02), shadows=True)
+        dark = found.skin & (found.diffuse[..., :3].max(axis=2) < 1e-3)
+        assert dark.sum() > 20
+        return found.scattered[dark][:, :3].mean(axis=0)
+
+    thin, thick = shade(3.0), shade(0.5)
+    assert thin[0] > 2.0 * thin[1] > 2.0 * thin[2]
+    assert thin[0] > 10.0 * thick[0]

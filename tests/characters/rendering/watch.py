@@ -1,6 +1,7 @@
 """A pass that draws nothing: what others made of the last picture is read from it."""
 
 from functools import cached_property
+from typing import Any
 
 import moderngl
 import numpy as np
@@ -69,5 +70,5 @@ class WatchPass(RenderPass):
 
 
 def _texels(texture: moderngl.Texture, kind: type = np.float16) -> Texels:
-    rows = np.frombuffer(texture.read(), kind)
+    rows: NDArray[Any] = np.frombuffer(texture.read(), kind)
     return rows.reshape(texture.height, texture.width, 4).astype(float)
