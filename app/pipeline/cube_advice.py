@@ -26,13 +26,19 @@ class CubeAdvice:
         Of the camera.
     known_cubes
         The player's other cubes.
+    players_cubes
+        Those of the other players.
     """
 
     def __init__(
-        self, cube: CubeModel, intrinsics: Intrinsics, known_cubes: Sequence[CubeModel]
+        self,
+        cube: CubeModel,
+        intrinsics: Intrinsics,
+        known_cubes: Sequence[CubeModel],
+        players_cubes: Sequence[CubeModel] = (),
     ) -> None:
         self._cube = cube
-        self._other = OtherCube(cube, known_cubes)
+        self._other = OtherCube(cube, known_cubes, players_cubes)
         self._print_watch = PrintWatch(cube, intrinsics)
         self.other_cube: CubeModel | None = None
         """Another cube than the one in play, if one is in view."""

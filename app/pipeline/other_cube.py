@@ -20,10 +20,17 @@ class OtherCube:
         The cube in play.
     known_cubes
         The player's cubes. One with the markers of a bundled cube takes its place.
+    players_cubes
+        Those of the other players, which are in play too.
     """
 
-    def __init__(self, cube: CubeModel, known_cubes: Sequence[CubeModel] = ()) -> None:
-        self._cube, self._known_cubes = cube, tuple(known_cubes)
+    def __init__(
+        self,
+        cube: CubeModel,
+        known_cubes: Sequence[CubeModel] = (),
+        players_cubes: Sequence[CubeModel] = (),
+    ) -> None:
+        self._in_play, self._known_cubes = (cube, *players_cubes), tuple(known_cubes)
         self._recognizer: CubeRecognizer | None = None
         self._unseen_since: float | None = None
         self._looked_at = self._named_at = float("-inf")
@@ -44,13 +51,13 @@ class OtherCube:
         if self._recognizer is None:
             self._recognizer = CubeRecognizer(tuple(self._candidates()))
         found = self._recognizer.recognize(frame.image)
-        if found is not None and found is not self._cube:
+        if found is not None and all(found is not each for each in self._in_play):
             self._found, self._named_at = found, frame.timestamp
 
     def _candidates(self) -> Iterator[CubeModel]:
         """Yield the first of the cubes that have the same markers."""
         seen = set()
-        for cube in (self._cube, *self._known_cubes, *map(CubeModel.load, bundled_cubes())):
+        for cube in (*self._in_play, *self._known_cubes, *map(CubeModel.load, bundled_cubes())):
             if cube.markers not in seen:
                 yield cube
             seen.add(cube.markers)

@@ -31,7 +31,7 @@ class CubePlayer:
         Its name among the players.
     robot
         The name of its robot.
-    cube, camera, known_cubes
+    cube, camera, known_cubes, players_cubes
         See `TrackedCube`.
     """
 
@@ -42,9 +42,10 @@ class CubePlayer:
         cube: CubeModel,
         camera: LearnedCamera,
         known_cubes: Sequence[CubeModel],
+        players_cubes: Sequence[CubeModel] = (),
     ) -> None:
         self.name, self.robot, self.cube = name, robot, cube
-        self.tracked = TrackedCube(cube, camera, known_cubes)
+        self.tracked = TrackedCube(cube, camera, known_cubes, players_cubes)
         """The cube in view, and what it has told of the camera."""
         self.obstacles = Obstacles(cube.edge)
         """What is in the way of the characters."""
@@ -78,7 +79,9 @@ def make_players(
     camera = LearnedCamera(intrinsics)
     names = distinct_names(each.name for each in cubes)
     return tuple(
-        CubePlayer(name, robot, cube, camera, known_cubes)
+        CubePlayer(
+            name, robot, cube, camera, known_cubes, [each for each in cubes if each is not cube]
+        )
         for name, robot, cube in zip(names, robots, cubes, strict=False)
     )
 

@@ -32,13 +32,19 @@ class TrackedCube:
         Which all cubes in play share.
     known_cubes
         The player's other cubes.
+    players_cubes
+        Those of the other players.
     """
 
     def __init__(
-        self, cube: CubeModel, camera: LearnedCamera, known_cubes: Sequence[CubeModel]
+        self,
+        cube: CubeModel,
+        camera: LearnedCamera,
+        known_cubes: Sequence[CubeModel],
+        players_cubes: Sequence[CubeModel] = (),
     ) -> None:
         self._tracker = CubeTracker(cube, camera.intrinsics, camera)
-        self._advice = CubeAdvice(cube, camera.intrinsics, known_cubes)
+        self._advice = CubeAdvice(cube, camera.intrinsics, known_cubes, players_cubes)
         self.error = ""
         """What the tracker's code raised in the last frame; "" for nothing."""
 

@@ -57,6 +57,14 @@ def test_the_right_cube_is_not_named(pictures):
     assert ADVICE not in seen
 
 
+def test_the_cube_of_another_player_is_not_named(pictures):
+    cube = CubeModel.load("locomotion-2")  # shares no marker with that one
+    alone = hints(Playground("follow", guessed(pictures[0]), cube=cube), pictures)
+    assert ADVICE in alone
+    beside = Playground("follow", guessed(pictures[0]), cube=cube, further_cubes=(COMPANION,))
+    assert ADVICE not in hints(beside, pictures)
+
+
 def test_a_cube_of_the_player_is_named_instead_of_a_bundled_one_with_its_markers(pictures):
     playground = Playground("follow", guessed(pictures[0]), known_cubes=(PLAIN,))
     assert hints(playground, pictures)[-1] == (
