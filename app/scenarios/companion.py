@@ -31,6 +31,13 @@ MIN_CUBE_DISTANCE_M, MAX_CUBE_DISTANCE_M = 0.09, 0.26
 FACING_OFFSET = np.array([0.5, 2.0])
 """The point that Vleo faces, from its place [m]: the player, and a little towards the cube."""
 
+INSTEAD: dict[Action, tuple[str, ...]] = {
+    "idle": (),
+    "kiss": ("cheer", "wave", "nod"),
+    "shout": ("shake", "jump"),
+}
+"""What characters do who can neither kiss nor shout, such as persons; the first that they can."""
+
 FULL_WEIGHT = 0.97
 """Intensity that counts as the maximum for the hint: nobody turns a knob exactly to its end."""
 
@@ -82,7 +89,7 @@ class Companion:
                 target=self._place,
                 facing=None if self._place is None else self._place + FACING_OFFSET,
             ),
-            action=ActionIntent(self._action, self._weight),
+            action=ActionIntent(_nearest(self._action, situation), self._weight),
             visible=visible,
         )
         return Outcome(command, emotion, self._hint(controls), self._action)
@@ -125,3 +132,10 @@ class Companion:
         if self._weight > FULL_WEIGHT:
             return "That is all I can give!"
         return "Turn the cube like a knob: right for more, left for less"
+
+
+def _nearest(action: Action, situation: Situation) -> str:
+    """Return what a character does instead of an action that it cannot do, "idle" for nothing."""
+    if situation.character is None or action in situation.actions:
+        return action
+    return next((each for each in INSTEAD[action] if each in situation.actions), "idle")

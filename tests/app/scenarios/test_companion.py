@@ -5,6 +5,7 @@ import pytest
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.scenarios import make_scenario
+from cubeling.characters import Animator, Character, CharacterCommand
 from cubeling.tracking import CubeModel
 
 
@@ -97,3 +98,18 @@ def test_a_face_without_an_action_role_is_idle(hand):
     companion = make_scenario("companion", CubeModel.load("locomotion"))
     outcome = play(companion, [hand.frame(), *hand.tip("left"), *hand.turn(0.5, 1)])
     assert outcome.command.activity == "idle"
+
+
+@pytest.mark.parametrize(
+    ("known", "done"), [(("wave", "cheer", "shake"), "shake"), (("wave",), "idle"), ((), "idle")]
+)
+def test_who_cannot_shout_does_something_like_it_and_feels_the_same(companion, hand, known, done):
+    play(companion, [hand.frame(), *hand.tip("front")])
+    character = Character.load("human")
+    posed = Animator(character).update(CharacterCommand(0.0))
+    outcome = play(companion, hand.tip("right"))
+    seen = Situation(posed, actions=known)
+    other = companion.update(hand.frame(), seen, Inputs())
+    assert outcome.command.activity == "shout"
+    assert other.command.activity == done
+    assert other.icon == "shout"
