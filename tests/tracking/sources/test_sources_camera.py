@@ -223,9 +223,10 @@ def test_images_of_another_size_are_left_out_and_counted(capture):
         assert source.health.images_unusable
         assert source.health.unusable > 0
         capture.frames.get = usual
-        capture.frames.put(picture(1))
+        pictures = map(picture, itertools.count(1))
+        capture.frames.put(next(pictures))
         while (frame := source.wait(0.05)) is None:
-            pass
+            capture.frames.put(next(pictures))  # one may be read while the camera is reopened
         assert frame.image.shape == (48, 64, 3)
 
 
