@@ -49,6 +49,7 @@ ACTION_COLORS: dict[str, Color] = {
     "shrug": bgr("#7d7fa8"),
     "wait": bgr("#7d7fa8"),
     "search": bgr("#7d7fa8"),
+    "talk": bgr("#3a7bd5"),
 }
 """Colours of the character's actions."""
 

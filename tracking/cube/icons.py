@@ -178,7 +178,7 @@ def _flower(x: float, y: float) -> list[Array]:
 
 
 def _actions() -> dict[str, list[Array]]:
-    """Build the icons of what a character does that reaches for the cube and carries things."""
+    """Build the icons of a character that reaches for the cube, carries things, or talks."""
     hanging = ((0.3, 0.5), (0.29, 0.63))
     low, near = ((0.19, 0.5), (0.17, 0.63)), ((0.55, 0.49), (0.68, 0.53))
     return {
@@ -226,6 +226,11 @@ def _actions() -> dict[str, list[Array]]:
             x=0.34,
         ),
         "carry": _person(hanging, ((0.68, 0.5), (0.8, 0.4)), *_flower(0.84, 0.14)),
+        "talk": [
+            *_stroke(0.54, (0.32, 0.39), (0.68, 0.39)),
+            np.array([(0.26, 0.58), (0.54, 0.62), (0.22, 0.93)]),
+            *(_hole(_disc(x, 0.39, 0.06)) for x in (0.3, 0.5, 0.7)),
+        ],
     }
 
 
