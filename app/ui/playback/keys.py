@@ -62,7 +62,7 @@ BINDINGS: tuple[Binding, ...] = (
     *_row("Play", "menu: scenario, camera, character, robot", {"Tab": WindowRequest.MENU}),
     *_row("Keep", "keep the picture as a PNG file", {"S": WindowRequest.SNAPSHOT}),
     *_row("Keep", "record a session, and end it", {"R": Record()}),
-    *_row("Keep", "mark this moment; then a digit, or a name and Enter", {"B": MarkMoment()}),
+    *_row("Keep", "mark this moment; then a digit, or Enter and a name", {"B": MarkMoment()}),
     *_row("View", "mirror the picture", {"M": WindowRequest.MIRROR}),
     *_row("View", "full screen, and back", {"F": WindowRequest.FULL_SCREEN}),
     *_row("View", "panels with details", {"P": WindowRequest.PANELS}),

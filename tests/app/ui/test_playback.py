@@ -24,6 +24,7 @@ from cubeling.app.ui.playback.requests import (
     OpenCube,
     Pause,
     PlayScenario,
+    Record,
     Seek,
     SeekTo,
     StartOver,
@@ -370,7 +371,13 @@ def test_a_long_notice_stays_in_the_room_of_the_hint(scale):
 
 @pytest.mark.parametrize(
     ("keys", "names"),
-    [("2", ["2"]), (["F", "E", "L", "L", "Enter"], ["fell"]), (["F", "Esc"], []), (["Tab"], [])],
+    [
+        ("2", ["2"]),
+        (["Enter", "F", "E", "L", "L", "Enter"], ["fell"]),
+        (["Enter", "F", "Esc"], []),
+        (["Tab"], []),
+        (["R", "2"], []),
+    ],
 )
 def test_a_mark_gets_a_name_by_the_next_keys(tmp_path, keys, names):
     desk = Desk(tmp_path)
@@ -383,10 +390,19 @@ def test_a_mark_gets_a_name_by_the_next_keys(tmp_path, keys, names):
         desk.layer.press(key)
     asked = [each.name for each in desk.layer.take_requests() if isinstance(each, NameMark)]
     assert asked == names
+    desk.layer.take_inputs()
     desk.layer.press("B")
     desk.time += 10.0
     desk.layer.press("2")
     assert desk.layer.take_inputs().scenario == "sketch"
+
+
+def test_after_a_mark_letters_are_keys(tmp_path):
+    desk = Desk(tmp_path)
+    desk.layer.report(SessionStatus(recorded=True))
+    desk.layer.press("B")
+    desk.layer.press("R")
+    assert isinstance(desk.layer.take_requests()[-1], Record)
 
 
 def test_what_is_typed_is_text_while_the_field_is_open(desk):
