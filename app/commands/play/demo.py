@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
+from cubeling.app.commands.play.first_camera import open_first_camera
 from cubeling.app.commands.play.part import EndOption, LoopOption, StartOption
 from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
@@ -28,7 +29,6 @@ from cubeling.app.ui.display import has_display
 if TYPE_CHECKING:
     from cubeling.app.session import SessionOptions
     from cubeling.app.ui.playback.status import EndCard
-    from cubeling.tracking import FrameSource
 
 DEFAULT_VIDEO = Path("demo.mp4")
 """The program's own output: it is overwritten without being asked."""
@@ -85,7 +85,7 @@ def demo(
     with ExitStack() as closing:
         camera = None
         if not (recording or loop or start or end is not None):
-            camera = _open_camera(closing, console)
+            camera = open_first_camera(closing)
         if camera is None:
             console.print(
                 f"Playing the bundled recording of [bold]{scenario}[/]; ? shows the keys, Esc ends."
@@ -147,14 +147,3 @@ def _of_recording(options: SessionOptions) -> SessionOptions:
             f"or cubeling play {scenario} --source synthetic:companion (or follow, or sketch)"
         )
     return replace(options, source=str(bundled_session(scenario)))
-
-
-def _open_camera(closing: ExitStack, console: Console) -> FrameSource | None:
-    """Open the first camera, or say in one line why the recording plays instead."""
-    from cubeling.tracking import TrackingError, open_source
-
-    try:
-        return closing.enter_context(open_source(DEFAULT_CAMERA))
-    except TrackingError as error:
-        console.print(f"[dim]No live picture: {error}[/]", soft_wrap=True)
-        return None

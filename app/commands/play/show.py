@@ -1,7 +1,6 @@
 """The command `cubeling show`."""
 
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +8,7 @@ import typer
 
 from cubeling.app.commands.character_options import VoiceOption
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
+from cubeling.app.commands.play.first_camera import DESK, open_camera_or_desk
 from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
     FolderOption,
@@ -17,13 +17,12 @@ from cubeling.app.commands.play.play_options import (
     SourceOption,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
-from cubeling.app.commands.play.talk import DESK, opened_camera
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.registry import SHOW_SUFFIX
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
 
-BUNDLED = ("antigone",)
+BUNDLED_PLAYS = ("antigone",)
 """Names of the plays that come with the program."""
 
 
@@ -31,7 +30,7 @@ BUNDLED = ("antigone",)
 def show(
     play: Annotated[
         str, typer.Argument(help="A .show file, see docs/talking.md; or antigone.")
-    ] = BUNDLED[0],
+    ] = BUNDLED_PLAYS[0],
     source: SourceOption = DEFAULT_CAMERA,
     language: Annotated[str | None, typer.Option(help="none to show it without a sound.")] = None,
     output: OutputOption = None,
@@ -49,7 +48,7 @@ def show(
 
     Example: cubeling show antigone -o antigone.mp4
     """
-    path = str(_bundled(play)) if play in BUNDLED else play
+    path = str(_bundled(play)) if play in BUNDLED_PLAYS else play
     if not path.endswith(SHOW_SUFFIX):
         raise AppError(f"'{play}' is no play: give a .show file, see docs/talking.md")
     check_scenario(path)
@@ -79,8 +78,7 @@ def show(
     with ExitStack() as closing:
         camera = None
         if options.windowed and source == DEFAULT_CAMERA:
-            camera = opened_camera(closing)
-            options = options if camera else replace(options, source=DESK)
+            options, camera = open_camera_or_desk(options, closing)
         play_session(
             options, f"showing {play}", source=camera, preferences=kept, until_over=written
         )

@@ -5,16 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.markup import escape
 
 from cubeling.app.commands.character_options import VoiceOption
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
+from cubeling.app.commands.play.first_camera import DESK, open_camera_or_desk
 from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
     FILES_GROUP,
@@ -33,14 +31,8 @@ from cubeling.app.scenarios import find_scenario
 from cubeling.app.ui.display import has_display
 from cubeling.files import FileKind
 
-if TYPE_CHECKING:
-    from cubeling.tracking import FrameSource
-
-BUNDLED = "talk"
+BUNDLED_DIALOGUE = "talk"
 """Name of the dialogue that comes with the program."""
-
-DESK = "synthetic:talk"
-"""What is seen where there is no camera: the cube beside the character."""
 
 TYPED_FILE = FileKind(
     "text", (".txt",), AppError, 1_000_000, "cubeling.app.commands.play.talk:read_typed"
@@ -52,7 +44,7 @@ TYPED_FILE = FileKind(
 def talk(
     script: Annotated[
         str, typer.Argument(help="A dialogue: an .xml file, see docs/talking.md.")
-    ] = BUNDLED,
+    ] = BUNDLED_DIALOGUE,
     character: CharacterOption = None,
     language: Annotated[
         str,
@@ -104,7 +96,7 @@ def talk(
 
     Example: cubeling talk --character vleo
     """
-    if script != BUNDLED and not script.endswith(SCRIPT_SUFFIX):
+    if script != BUNDLED_DIALOGUE and not script.endswith(SCRIPT_SUFFIX):
         raise AppError(f"'{script}' is no dialogue: give an .xml file, see docs/talking.md")
     check_input(typed, "text")
     from cubeling.app.running.option_checks import check_inputs, check_output_paths
@@ -141,8 +133,7 @@ def talk(
     with ExitStack() as closing:
         camera = None
         if options.windowed and source is None and typed is None:
-            camera = opened_camera(closing)
-            options = options if camera else replace(options, source=DESK)
+            options, camera = open_camera_or_desk(options, closing)
         lines = _lines(typed) if written or typed else None
         play_session(options, f"talking: {script}", source=camera, preferences=kept, typed=lines)
 
@@ -165,15 +156,3 @@ def _asked_lines() -> Iterator[str]:
             yield input("> ")
         except EOFError:
             return
-
-
-def opened_camera(closing: ExitStack) -> FrameSource | None:
-    """Open the first camera; without one, say so and return None."""
-    from cubeling.tracking import TrackingError, open_source
-
-    try:
-        return closing.enter_context(open_source(DEFAULT_CAMERA))
-    except TrackingError as error:
-        line = f"[dim]No live picture, so the desk is drawn: {escape(str(error))}[/]"
-        Console().print(line, soft_wrap=True)
-        return None

@@ -1,0 +1,37 @@
+"""The first camera of the computer, and what is shown where there is none."""
+
+from contextlib import ExitStack
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.markup import escape
+
+from cubeling.app.commands.play.play_options import DEFAULT_CAMERA
+
+if TYPE_CHECKING:
+    from cubeling.app.session import SessionOptions
+    from cubeling.tracking import FrameSource
+
+DESK = "synthetic:talk"
+"""What is drawn where there is no camera: the cube beside the character."""
+
+
+def open_first_camera(closing: ExitStack, instead: str = "") -> "FrameSource | None":
+    """Open the first camera; without one, say so, and what there is `instead`, and return None."""
+    from cubeling.tracking import TrackingError, open_source
+
+    try:
+        return closing.enter_context(open_source(DEFAULT_CAMERA))
+    except TrackingError as error:
+        line = f"[dim]No live picture{instead}: {escape(str(error))}[/]"
+        Console().print(line, soft_wrap=True)
+        return None
+
+
+def open_camera_or_desk(
+    options: "SessionOptions", closing: ExitStack
+) -> "tuple[SessionOptions, FrameSource | None]":
+    """Open the first camera; without one, return options that draw the desk, and None."""
+    camera = open_first_camera(closing, ", so the desk is drawn")
+    return (options, camera) if camera else (replace(options, source=DESK), None)
