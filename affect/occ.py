@@ -13,7 +13,12 @@ from cubeling.affect.emotion import Emotion
 from cubeling.affect.errors import AffectError
 from cubeling.affect.labels import WORD_TABLE, Face
 from cubeling.affect.regions import on_disc
-from cubeling.affect.traits import MEHRABIAN, THESIS_NEGATIVE_ROW, THESIS_POSITIVE_ROW, TraitRow
+from cubeling.affect.traits import (
+    MEHRABIAN_ROWS,
+    THESIS_NEGATIVE_ROW,
+    THESIS_POSITIVE_ROW,
+    TraitRow,
+)
 
 _ROWS = {row.word: row for row in WORD_TABLE if row.set == "occ" and row.face != "neutral"}
 
@@ -55,7 +60,7 @@ def _alma_matrix() -> InfluenceMatrix:
     for word, (valence, arousal) in OCC_PLACES.items():
         point = valence, arousal, DOMINANCE[word]
         row = [
-            sum(p * axis[trait] for p, axis in zip(point, MEHRABIAN, strict=True))
+            sum(p * axis[trait] for p, axis in zip(point, MEHRABIAN_ROWS, strict=True))
             for trait in range(5)
         ]
         shift = (1.0 - sum(row)) / 5.0

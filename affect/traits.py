@@ -32,7 +32,7 @@ THESIS_POSITIVE_ROW = TraitRow(0.15, 0.0, 0.45, 0.40, -0.30)
 THESIS_NEGATIVE_ROW = TraitRow(0.10, 0.10, 0.0, 0.10, 0.70)
 """Row of P₀ for unpleasant ones."""
 
-MEHRABIAN = (
+MEHRABIAN_ROWS = (
     TraitRow(0.0, 0.0, 0.21, 0.59, -0.19),
     TraitRow(0.15, 0.0, 0.0, 0.30, 0.57),
     TraitRow(0.25, 0.17, 0.60, -0.32, 0.0),
@@ -76,6 +76,6 @@ class Ocean:
         centred = [2.0 * trait - 1.0 for trait in astuple(self)]
         pleasure, arousal, _ = (
             sum(share * trait for share, trait in zip(row, centred, strict=True))
-            for row in MEHRABIAN
+            for row in MEHRABIAN_ROWS
         )
         return Emotion(pleasure / 3.0, arousal / 3.0)

@@ -33,7 +33,7 @@ TABLE_RADIUS_M = 0.16
 CUBE_MARGIN = 1.5
 """What stays sharp around a cube, as a multiple of its size."""
 
-BLOCKS = 24
+BLOCKS_ACROSS = 24
 """Blocks across the width of a picture where it is not sharp: a face that fills a quarter of the
 picture has six."""
 
@@ -136,7 +136,7 @@ def sharp_region(
 def blurred(image: Image, sharp: NDArray[np.uint8]) -> Image:
     """Return a picture with large blocks where it is not sharp."""
     height, width = image.shape[:2]
-    size = BLOCKS, max(1, round(BLOCKS * height / width))
+    size = BLOCKS_ACROSS, max(1, round(BLOCKS_ACROSS * height / width))
     blocks = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
     smooth = cv2.resize(blocks, (width, height), interpolation=cv2.INTER_LINEAR)
     return np.where(sharp[..., None] > 0, image, np.asarray(smooth, np.uint8))

@@ -10,7 +10,7 @@ STRAIGHT_COSINE = 0.95
 within 0.1° of the arc."""
 
 FULL_TURN_COSINE = -0.97
-"""The same below which two rotations are alike again, a turn apart: the way begins anew."""
+"""The same below which two rotations are alike again, a turn apart: the way begins again."""
 
 
 class WayRound:

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 PHONE = "phone"
 """The camera of whoever opens the page."""
 
-PORT = 8420
+DEFAULT_PORT = 8420
 """The usual port; no registered service has it."""
 
 WAIT_S = 0.2
@@ -65,7 +65,9 @@ def serve(
         bool,
         typer.Option("--lan", help="Let phones of your network in, over TLS; else this computer."),
     ] = False,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="The TCP port; 0: any.")] = PORT,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="The TCP port; 0: any.")
+    ] = DEFAULT_PORT,
     source: Annotated[
         str,
         typer.Option(

@@ -17,7 +17,7 @@ SPEAKING_WIDTH = 30.0
 """Room for the three dots of one that speaks."""
 
 MOOD_STEPS = 8
-"""Faces between neutral and the greatest mood: a label is drawn anew when another one fits."""
+"""Faces between neutral and the greatest mood: a label is drawn again when another one fits."""
 
 
 def label(name: str, mood: float, speaks: bool, scale: float) -> Canvas:

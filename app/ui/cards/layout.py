@@ -49,7 +49,7 @@ LABEL_DISTANCE = 8.0
 LABEL_STAY_S = 0.7
 """A label goes to a better place once that has been free for so long [s]."""
 
-NOWHERE = 5
+LEFT_OUT_SIDE = 5
 """The side of a label that is left out: the number of the others."""
 
 
@@ -306,7 +306,7 @@ class LabelLayout:
 
     def _side(self, name: str, free: Collection[int], now: float) -> int:
         """Return the side of a label, of those that are free."""
-        best = min(free, default=NOWHERE)
+        best = min(free, default=LEFT_OUT_SIDE)
         place = self._places.setdefault(name, _LabelPlace(best))
         if best >= place.side:
             place.better_since = math.inf

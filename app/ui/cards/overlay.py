@@ -109,7 +109,7 @@ def cards_over(
         moves = command.activity == "move" or name in ("stand", "walk", "run", "hop")
         weight = command.weight if name == "idle" or step.has_intensity else None
         strength = command.speed if moves else weight
-        # The value changes in every frame: drawn anew is what moves the bar by a pixel.
+        # The value changes in every frame: drawn again is what moves the bar by a pixel.
         strength = None if strength is None else round(strength, 2)
         cards["bottom left"] = _action(name, moves, strength, scale)
     if step.close_up is not None and width >= MIN_VIRTUAL_ROBOT_WIDTH:

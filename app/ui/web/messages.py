@@ -20,10 +20,10 @@ the scenario of that number (JPEG)."""
 Role = Literal["play", "camera", "window", "view"]
 """What a page is: camera and window, one of both, or a picture that nobody touches."""
 
-CAMERAS: tuple[Role, ...] = ("play", "camera")
+CAMERA_ROLES: tuple[Role, ...] = ("play", "camera")
 """The roles whose camera may be that of the session."""
 
-PLAYERS: tuple[Role, ...] = ("play", "camera", "window")
+PLAYER_ROLES: tuple[Role, ...] = ("play", "camera", "window")
 """The roles that may ask something of the session."""
 
 

@@ -21,7 +21,7 @@ from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
 from cubeling.app.ui.web.client import LAST_WORDS_S, PageClient, ShownPicture
 from cubeling.app.ui.web.limits import RateLimit, WebLimits
-from cubeling.app.ui.web.messages import CAMERAS, PLAYERS, Role, Said
+from cubeling.app.ui.web.messages import CAMERA_ROLES, PLAYER_ROLES, Role, Said
 from cubeling.app.ui.web.page import page, page_headers
 from cubeling.tracking import ImageFeed
 
@@ -280,7 +280,7 @@ class WebServer:
         await opened.prepare(request)
         self._strangers.pop(request.protocol, None)
         cutout = request.query.get("background") == "none"
-        kind = "cards" if role in PLAYERS else "cutout" if cutout else "plain"
+        kind = "cards" if role in PLAYER_ROLES else "cutout" if cutout else "plain"
         client = PageClient(opened, name, cast(Role, role), kind, self._limits, self._clock)
         await self._exchange(client)
         return opened
@@ -291,11 +291,11 @@ class WebServer:
         if before is not None:  # the same page, whose connection was cut
             if before is self._owner:
                 self._owner = client
-            before.leave("this page is connected anew")
+            before.leave("this page is connected again")
         self._count()
         client.tell(do="welcome", **self._welcome)
         client.tell(do="status", **self._status)
-        if client.role in PLAYERS:
+        if client.role in PLAYER_ROLES:
             for tile in self.tiles:
                 client.sound(tile)
         try:
@@ -320,12 +320,12 @@ class WebServer:
         elif said.do == "camera":
             if not CAMERA_NAME.fullmatch(said.name):
                 raise AppError("this is no name of a camera")
-            if client.role in CAMERAS and self._take_place(client):
+            if client.role in CAMERA_ROLES and self._take_place(client):
                 self.camera = said.name
                 self.feed.begin()
         elif said.do == "stop":
             self._owner = None if self._owner is client else self._owner
-        elif client.role in PLAYERS:
+        elif client.role in PLAYER_ROLES:
             self._requests.append(said)
 
     def _see(self, client: PageClient, number: int, taken: float, jpeg: bytes) -> None:
@@ -347,7 +347,7 @@ class WebServer:
         return self._owner is client
 
     def _place_of(self, client: PageClient) -> str:
-        if client.role not in CAMERAS or self._owner is None:
+        if client.role not in CAMERA_ROLES or self._owner is None:
             return "free"
         return "yours" if self._owner is client else "other"
 

@@ -9,7 +9,7 @@ from typing import Any
 from cubeling.app.session import SessionFile
 from cubeling.app.session.encoding import upgrade
 
-UNCOMPARED = ("session", "bytes", "channels")
+UNCOMPARED_KEYS = ("session", "bytes", "channels")
 """Keys of the figures that differ between any two files, or are compared by themselves."""
 
 MAX_SHOWN_CHARS = 48
@@ -73,7 +73,7 @@ def _flat(document: dict[str, Any], before: str = "") -> dict[str, Any]:
     """Return nested tables as one, "tracking.found_share"; lists are one value."""
     flat: dict[str, Any] = {}
     for key, value in document.items():
-        if not before and key in UNCOMPARED:
+        if not before and key in UNCOMPARED_KEYS:
             continue
         if isinstance(value, dict):
             flat |= _flat(value, f"{before}{key}.")

@@ -5,7 +5,7 @@ import pytest
 
 from cubeling.app.session import SessionFile, messages
 from cubeling.app.session.encoding import IMAGE_TOPIC
-from cubeling.app.workshop.anonymising import BLOCKS, blurred, sharp_region
+from cubeling.app.workshop.anonymising import BLOCKS_ACROSS, blurred, sharp_region
 from cubeling.tracking import Intrinsics, open_source
 
 EDGE = 0.06
@@ -40,7 +40,7 @@ def test_what_is_not_sharp_has_no_detail_left():
     assert (picture[mask > 0] == noise[mask > 0]).all()
     outside = picture.astype(float)[:90]
     assert outside.std() < noise.std() / 10
-    step = 640 // BLOCKS
+    step = 640 // BLOCKS_ACROSS
     neighbours = np.abs(np.diff(outside, axis=1)).mean()
     assert neighbours < np.abs(outside[:, step:] - outside[:, :-step]).mean() / 4
 

@@ -22,7 +22,7 @@ AS_IT_IS = (
 
 
 async def picture(folder: Path) -> None:
-    """Draw the picture of the guide about the page anew."""
+    """Draw the picture of the guide about the page again."""
     camera, shots = folder / "camera.mjpeg", []
     write_camera(camera, "companion", 8.0, upright=True, clock=False)
     async with chromium(camera) as browser, serving(folder) as served:

@@ -33,7 +33,7 @@ let page = store("sessionStorage", "page", () => random(16));
 const device = store("localStorage", "camera", () => random(8));
 const MAX_SIDE = Math.min(+query.get("size") || 1280, 1920), IN_FLIGHT = 2, SILENT_S = 2, TRY_S = 1.5;
 
-/* The connection: each message or tick shows that it is alive; a silent one is opened anew. */
+/* The connection: each message or tick shows that it is alive; a silent one is opened again. */
 let socket, heard = 0, opened = 0, failures = 0, welcome, playing = role === "view", tiles = {};
 function connect() {
   const old = socket;
@@ -44,7 +44,7 @@ function connect() {
   s.binaryType = "arraybuffer";
   s.onmessage = e => { heard = now(); typeof e.data === "string" ? told(JSON.parse(e.data)) : got(e.data); };
   s.onclose = e => {
-    if (e.reason === "this page is connected anew") page = random(16); // a copy of this tab
+    if (e.reason === "this page is connected again") page = random(16); // a copy of this tab
     failures++;
     if (failures > 2) find();
     setTimeout(() => s === socket && connect(), 400);
