@@ -32,12 +32,16 @@ def check_input(path: str | Path | None, kind: str) -> None:
 def check_motions(names: Iterable[str]) -> None:
     """Refuse motions that are not there: files, characters with a clip (`fox.glb#Walk`), folders.
 
-    A bundled character with one of its clips (`human#wave`) is left to who reads it.
+    The clip of a bundled character (`human#wave`) is left to who reads it.
     """
     for name in names:
         path = Path(name.partition("#")[0])
         if path.suffix and not path.is_dir():
             check_input(path, "motion")
+        elif not path.is_dir() and not _is_bundled(str(path)):
+            raise AppError(
+                f"there are no motions '{name}': no file, folder or bundled character is called so"
+            )
 
 
 def check_character(name: str | None) -> None:
@@ -50,7 +54,14 @@ def check_character(name: str | None) -> None:
     if Path(name).suffix:
         check_input(name, "character")
         return
+    if not _is_bundled(name):
+        from cubeling.characters import Character
+
+        Character.load(name)  # says which there are
+
+
+def _is_bundled(name: str) -> bool:
+    """Return whether a bundled character has a name."""
     from cubeling.characters import Character  # it loads numpy
 
-    if name not in Character.bundled_names():
-        Character.load(name)  # says which there are
+    return name in Character.bundled_names()

@@ -42,7 +42,10 @@ def check_output(
     if path.exists() and not path.is_file():
         raise AppError(f"'{path}' is not a file: name a file for the {kind}")
     if path.suffix.lower() not in suffixes:
-        raise AppError(f"a {kind} is written as {', '.join(suffixes)}, not as '{path.name}'")
+        article = "an" if kind[0] in "aeiou" else "a"
+        raise AppError(
+            f"{article} {kind} is written as {', '.join(suffixes)}, not as '{path.name}'"
+        )
     if not path.parent.is_dir():
         raise AppError(f"there is no folder '{path.parent}' for the {kind} '{path.name}'")
     if path.exists() and not overwrite:

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_motions
 from cubeling.app.workshop.motion_graphs.page import write_page
 from cubeling.app.workshop.motion_graphs.printed import (
     CRITICAL,
@@ -17,6 +19,12 @@ from cubeling.app.workshop.motion_graphs.transition import find_transitions
 from cubeling.characters import Character
 from cubeling.characters.synthesis.graphs.storage import load_graph
 from cubeling.characters.synthesis.library import MotionLibrary
+
+
+@pytest.mark.parametrize("name", ["nosuch", "nosuch#Walk"])
+def test_motions_that_are_nowhere_are_refused_before_anything_is_opened(name):
+    with pytest.raises(AppError, match=f"there are no motions '{name}'"):
+        check_motions(["human#wave", name])
 
 
 @pytest.fixture

@@ -66,7 +66,7 @@ WRONG = {
     "schedule x.xml": "cannot read the schedule 'x.xml'",
     "latency --scenario nosuch": "no scenario is called 'nosuch'",
     "schedule any.xml -o x.abc": "a schedule is written as",
-    "idle learn any.bvh -o x.abc": "a idle motion is written as",
+    "idle learn any.bvh -o x.abc": "an idle motion is written as",
     "robot nosuch": "No such command",
 }
 """Command lines, and what is said of each."""
