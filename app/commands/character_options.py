@@ -19,8 +19,8 @@ OwnMotionsOption = Annotated[
     bool,
     typer.Option(
         "--own-motions-only",
-        help="A character without clips keeps its rest pose, instead of playing those of a bundled "
-        "one of its kind.",
+        help="A character plays only clips of its own, and none keeps its rest pose, instead of "
+        "borrowing those of a bundled one of its kind.",
         rich_help_panel=CHARACTER_GROUP,
     ),
 ]

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 
 from cubeling.characters.control.controllers.actions import clips_of_actions
-from cubeling.characters.control.controllers.in_place import idle_clip
 from cubeling.characters.control.controllers.walk import NOT_ACTIONS, WalkController
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.locomotion.gaits import IDLE_SPEED, RUN_CLIPS, WALK_CLIPS, WALK_RUN_SPEEDS
 from cubeling.characters.model.character import Character
+from cubeling.characters.model.standing import idle_clip
 from cubeling.characters.motion.trees.conditions import Condition
 from cubeling.characters.motion.trees.plan import (
     PARAMETERS,

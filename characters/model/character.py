@@ -20,7 +20,12 @@ from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.model.sidecar import Sidecar, read_sidecar
 from cubeling.characters.model.speaking import gestures_beside
 from cubeling.characters.model.springs import SpringBone
-from cubeling.characters.model.standing import StandingFactory, recordings_beside, standing_factory
+from cubeling.characters.model.standing import (
+    StandingFactory,
+    can_stand,
+    recordings_beside,
+    standing_factory,
+)
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.motion import StandingMotion
 from cubeling.characters.motion.trees.plan import Plan
@@ -195,14 +200,16 @@ class Character:
         names = {part: self.skeleton.names[joint] for part, joint in self.anatomy.joints.items()}
         return replace(self, semantics={**dict.fromkeys(BODY_PARTS, ""), **names})
 
-    @property
+    @cached_property
     def lender(self) -> str | None:
-        """Bundled character of its kind whose motions it plays by default; None if it has its own.
+        """Bundled character of its kind that lends it motions by default, if it has none to stand.
 
-        A pose of one frame is no motion. See `characters.retargeting.with_lent_motions`.
+        See `can_stand` and `characters.retargeting.with_lent_motions`.
         """
-        moves = any(clip.duration > 0.0 for clip in self.clips.values())
-        return None if moves or self.standing is not None else LENDERS.get(self.anatomy.kind)
+        stated = self.standing is not None or self.plan is not None
+        if stated or can_stand(self.clips, self.skeleton, self.anatomy):
+            return None
+        return LENDERS.get(self.anatomy.kind)
 
     @cached_property
     def upper_body(self) -> "UpperBody":

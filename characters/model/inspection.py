@@ -199,9 +199,10 @@ def _is_head(character: Character) -> bool:
 
 def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iterator[str]:
     if character.lender is not None:
+        none = "none of its motions stands" if clips else "it has no motions of its own"
         yield (
-            f"It has no motions of its own: it plays those of the bundled {character.lender}, "
-            "retargeted; --own-motions-only leaves them out."
+            f"{none.capitalize()}: {'beside them' if clips else 'it'} plays those of the bundled "
+            f"{character.lender}, retargeted; --own-motions-only leaves them out."
         )
     elif not clips and _is_head(character):
         yield "It is a head: it speaks, looks around and shows moods, and does not walk."

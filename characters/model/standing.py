@@ -1,10 +1,12 @@
 """How a character stands, if it was recorded: the .idle file beside it, or another one."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.motion.clip import Clip
@@ -21,10 +23,42 @@ if TYPE_CHECKING:
 StandingFactory = Callable[[int], StandingMotion]
 """Makes the motion that a character stands with from a seed."""
 
+STANDING_FOOT_WAY = 0.25
+"""How far a foot of who stands may be from where it is on average, in parts of the leg."""
+
 
 def idle_clips(clips: Mapping[str, Clip]) -> list[Clip]:
     """Return the clips of idling: those whose name contains "idle"."""
     return [clips[name] for name in clips if "idle" in name.lower()]
+
+
+def idle_clip(clips: Iterable[str]) -> str | None:
+    """Return the name of the clip to stand with: without an idle clip, the first one.
+
+    >>> idle_clip(["nod", "Idle"]), idle_clip(["nod", "kiss"]), idle_clip([])
+    ('Idle', 'nod', None)
+    """
+    names = list(clips)
+    return next((name for name in names if "idle" in name.lower()), next(iter(names), None))
+
+
+def can_stand(clips: Mapping[str, Clip], skeleton: Skeleton, anatomy: Anatomy) -> bool:
+    """Return whether there is a clip to stand with: of idling, or one whose feet hardly move.
+
+    A clip of one frame is a pose, and none to stand with.
+    """
+    moving = {name: clip for name, clip in clips.items() if clip.duration > 0.0}
+    name = idle_clip(moving)
+    if name is None or idle_clips(moving):
+        return name is not None
+    feet = [joint for part, joint in anatomy.joints.items() if part.endswith("Foot")]
+    hips = anatomy.joint("hips")
+    if not feet or hips is None:
+        return True
+    rest = skeleton.rest.globals(skeleton)[:, :3, 3]
+    leg = float(np.linalg.norm(rest[feet] - rest[hips], axis=-1).mean())
+    at = moving[name].in_place.globals(skeleton)[:, feet][..., :3, 3]
+    return bool(np.linalg.norm(at - at.mean(0), axis=-1).max() < STANDING_FOOT_WAY * leg)
 
 
 def standing_factory(

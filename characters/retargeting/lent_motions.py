@@ -1,7 +1,8 @@
-"""Motions that a bundled character lends to one without clips, and its gestures of speech.
+"""Motions that a bundled character lends to one that has none to stand, and gestures of speech.
 
-Files of persons often have no clips (VRM, VRoid, Ready Player Me); without a loan they would stand
-in the pose in which they were modelled. A clip is retargeted when it is first asked for.
+Files of persons often have no clips (VRM, VRoid, Ready Player Me), or one walk or dance; without a
+loan they would stand in the pose in which they were modelled, or in mid-stride. Clips of their own
+come before lent ones of the same name. A clip is retargeted when it is first asked for.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -45,20 +46,23 @@ IDLE_CLIP = "idle"
 def with_lent_motions(character: Character) -> Character:
     """Return a character with the clips and gestures of `Character.lender`, if it has one.
 
-    The result has a root joint on the ground, so that it can walk. A character with motions of its
-    own, or a body that the lender's do not fit, is returned as it is.
+    The result has a root joint on the ground, so that it can walk. A character that can stand by
+    itself, or a body that the lender's motions do not fit, is returned as it is.
     """
     if character.lender is None:
         return character
-    body = with_root_joint(replace(character.with_stated_anatomy, clips={}))
+    moving = {name: clip for name, clip in character.clips.items() if clip.duration > 0.0}
+    body = with_root_joint(replace(character.with_stated_anatomy, clips=moving))
     # A file may rest in mid-stride: then its feet, arms and height would be those of a stride.
     body = with_attached_limbs(replace(body, skeleton=with_bind_pose(body)))
-    body = with_toe_ends(without_rest_scales(body))
+    if not moving:
+        body = with_toe_ends(without_rest_scales(body))
     try:
         loan = MotionLoan(character.lender, body)
     except CharacterError:  # its legs or hips are not known: it stays in its rest pose
         return character
-    return replace(body, clips=LentClips(loan), gestures=loan.gestures())
+    clips = LentClips(loan, body.clips)
+    return replace(body, clips=clips, gestures=body.gestures or loan.gestures())
 
 
 class MotionLoan:
@@ -128,11 +132,12 @@ class MotionLoan:
 
 
 class LentClips(Mapping[str, Clip]):
-    """The clips of a loan by name."""
+    """A character's own clips and, after them, those of a loan under names that it has not."""
 
-    def __init__(self, loan: MotionLoan) -> None:
+    def __init__(self, loan: MotionLoan, own: Mapping[str, Clip]) -> None:
         self._loan = loan
-        self._made: dict[str, Clip] = {}
+        self._own = own
+        self._made: dict[str, Clip] = {**own}
 
     def __getitem__(self, name: str) -> Clip:
         if name not in self._made:
@@ -140,13 +145,14 @@ class LentClips(Mapping[str, Clip]):
         return self._made[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._loan.lender.clips)
+        return iter(dict.fromkeys([*self._own, *self._loan.lender.clips]))
 
     def __len__(self) -> int:
-        return len(self._loan.lender.clips)
+        return len(self._own.keys() | self._loan.lender.clips.keys())
 
     def __contains__(self, name: object) -> bool:
-        return name in self._loan.lender.clips  # a Mapping's own would make the clip
+        # A Mapping's own would make the clip.
+        return name in self._own or name in self._loan.lender.clips
 
 
 class LentRecordings(Sequence[GestureRecording]):

@@ -1,7 +1,6 @@
 """A character that acts in place, and hops to where it is wanted."""
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from cubeling.characters.control.command import CharacterCommand, LocomotionIntent
@@ -10,6 +9,7 @@ from cubeling.characters.control.controllers.controller import ControllerFrame
 from cubeling.characters.control.controllers.feet_in_transition import FeetInTransition
 from cubeling.characters.control.speaking.shifting import CommandedStanding
 from cubeling.characters.model.character import Character
+from cubeling.characters.model.standing import idle_clip
 from cubeling.characters.motion.curves import ease
 from cubeling.characters.motion.motion import Motion, RootDelta
 from cubeling.characters.motion.phase import StaticPose
@@ -149,16 +149,6 @@ def _bearing(place: RootDelta, going: LocomotionIntent) -> float:
         return 0.0
     x, z = going.facing
     return wrap(place.bearing(float(x), float(z)))
-
-
-def idle_clip(clips: Iterable[str]) -> str | None:
-    """Return the name of the clip to stand with: without an idle clip, the first one.
-
-    >>> idle_clip(["nod", "Idle"]), idle_clip(["nod", "kiss"]), idle_clip([])
-    ('Idle', 'nod', None)
-    """
-    names = list(clips)
-    return next((name for name in names if "idle" in name.lower()), next(iter(names), None))
 
 
 def _idle(character: Character) -> Motion:

@@ -15,7 +15,6 @@ from cubeling.characters.control.controllers.actions import (
     next_action,
 )
 from cubeling.characters.control.controllers.controller import ControllerFrame
-from cubeling.characters.control.controllers.in_place import idle_clip
 from cubeling.characters.control.controllers.own_takes import standing_take, walking_take
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.control.controllers.walk import (
@@ -29,6 +28,7 @@ from cubeling.characters.locomotion.gaits import IDLE_SPEED, RUN_SPEED, TOP_SPEE
 from cubeling.characters.locomotion.steering import ARRIVAL_DISTANCE_M, has_arrived
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.motion_library import mirror_or_none
+from cubeling.characters.model.standing import idle_clip
 from cubeling.characters.motion.balance import MAX_UNLEANED_M_S2
 from cubeling.characters.motion.contacts import find_contacts
 from cubeling.characters.motion.motion import RootDelta

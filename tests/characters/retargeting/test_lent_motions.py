@@ -9,6 +9,7 @@ import pytest
 from cubeling.characters import Animator, Character, RootDelta, with_lent_motions
 from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import skin
+from cubeling.characters.model.standing import idle_clip
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.retargeting.attached_limbs import (
     with_attached_limbs,
@@ -61,6 +62,19 @@ def test_a_person_without_clips_stands_with_hanging_arms_from_the_first_frame_an
         posed = animator.update(command(frame / 30, "move", 2.0, there))
     assert posed.state in ("walk", "run")
     assert posed.table_from_character[2, 3] > 0.05
+
+
+def test_one_whose_only_clip_walks_borrows_the_rest_and_keeps_its_own():
+    own = Character.load("human")
+    stride = replace(own.clips["Walk"], name="animation0")
+    walker = replace(own, standing=None, plan=None, gestures=None, clips={"animation0": stride})
+    lent = with_lent_motions(walker)
+    assert {"animation0", "idle", "Walk", "wave"} <= {*lent.clips}
+    assert lent.clips["animation0"].poses is stride.poses
+    assert idle_clip(lent.clips) == "idle"
+    assert lent.gestures is not None
+    standing = replace(walker, clips={"survey": replace(own.clips["idle"], name="survey")})
+    assert with_lent_motions(standing) is standing  # it stands by itself
 
 
 @pytest.mark.skipif(not GIANTS, reason="the creatures of others are not here")
