@@ -118,7 +118,7 @@ OTHERWISE = {
     "characters/speech/audio.py": "FFmpeg opens what `SOUND_FILE` has opened",
     "cubeling/faces.py": "a file of the program",
     "cubeling/toml_file.py": "a file of the program",
-    "tracking/sources/rtsp.py": "an address",
+    "tracking/sources/streams/rtsp.py": "an address",
     "tracking/sources/video.py": "FFmpeg opens what `VIDEO_FILE` has checked",
 }
 """Modules that open files by themselves, and why."""

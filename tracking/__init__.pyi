@@ -42,7 +42,10 @@ from cubeling.tracking.sources.mcap_camera import (
     FOCAL_DEVIATION as FOCAL_DEVIATION,
     LENS_RECORD as LENS_RECORD,
 )
-from cubeling.tracking.sources.pushed import ImageFeed as ImageFeed, PushedSource as PushedSource
+from cubeling.tracking.sources.streams.pushed import (
+    ImageFeed as ImageFeed,
+    PushedSource as PushedSource,
+)
 from cubeling.tracking.tracker.frame_markers import FrameMarkers as FrameMarkers
 from cubeling.tracking.tracker.learned_camera import LearnedCamera as LearnedCamera
 from cubeling.tracking.tracker.print_check import (

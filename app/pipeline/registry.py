@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -24,22 +25,24 @@ BUNDLED = {
     "follow:Follow": "the character follows the cube; turn the cube to make it walk or run",
     "sketch:Sketch": "the cube draws a path of up to eight points, and the character walks it",
     "companion:Companion": "Vleo kisses or shouts, and changes the robot's mood",
-    "reach:Reach": "the character reaches for the cube, and brings small things to it",
+    "reach.scenario:Reach": "the character reaches for the cube, and brings small things to it",
     "talk:Talk": "Vleo talks with you about dinosaurs and feelings: type in the window",
 }
-"""The bundled scenarios; a new one is registered here. Each is the module in `app.scenarios`, which
-gives the scenario its name, with its class; then comes what it is, for the help of the command
-line: one sentence without a full stop."""
+"""The bundled scenarios; a new one is registered here. Each is the module in `app.scenarios`, whose
+first part gives the scenario its name, with its class; then comes what it is, for the help of the
+command line: one sentence without a full stop."""
+
+_PLACES = {re.split("[.:]", place)[0]: place for place in BUNDLED}
 
 SCENARIOS: Registry[type[Scenario]] = Registry(
-    {place.partition(":")[0]: f"cubeling.app.scenarios.{place}" for place in BUNDLED}
+    {name: f"cubeling.app.scenarios.{place}" for name, place in _PLACES.items()}
 )
 """The bundled scenarios by name."""
 
 WAITING = Registry[Callable[..., "Scenario"]]({"waiting": "cubeling.app.scenarios.waiting:Waiting"})
 """What decides for the characters of a cast that no cube leads."""
 
-SUMMARIES = {place.partition(":")[0]: summary for place, summary in BUNDLED.items()}
+SUMMARIES = {name: BUNDLED[place] for name, place in _PLACES.items()}
 """What the bundled scenarios are; each class takes its own from here."""
 
 

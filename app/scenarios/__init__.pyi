@@ -20,5 +20,5 @@ from cubeling.app.scenarios.companion import Companion as Companion
 from cubeling.app.scenarios.follow import Follow as Follow
 from cubeling.app.scenarios.mood import MoodController as MoodController
 from cubeling.app.scenarios.presence import Presence as Presence
-from cubeling.app.scenarios.reach import Reach as Reach
+from cubeling.app.scenarios.reach.scenario import Reach as Reach
 from cubeling.app.scenarios.sketch import Sketch as Sketch

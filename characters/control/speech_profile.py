@@ -18,7 +18,7 @@ from cubeling.files import write_whole
 from cubeling.toml_file import TomlTable, read, toml_kind
 
 if TYPE_CHECKING:  # a profile is read and checked before anything that plays it is loaded
-    from cubeling.characters.speech.accents import AccentSettings
+    from cubeling.characters.speech.prosody.accents import AccentSettings
     from cubeling.characters.synthesis.gestures.library import GestureLibrary
     from cubeling.characters.synthesis.gestures.planning import GesturePlanner
 
@@ -92,7 +92,7 @@ class SpeechProfile:
     @property
     def accents(self) -> AccentSettings:
         """How accents are found."""
-        from cubeling.characters.speech.accents import AccentSettings
+        from cubeling.characters.speech.prosody.accents import AccentSettings
 
         return AccentSettings(self.accent_threshold, self.accent_distance)
 

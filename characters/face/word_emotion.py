@@ -16,7 +16,7 @@ from cubeling.affect import Emotion
 from cubeling.affect.words import WORD_PLACES
 from cubeling.characters.face.affect_display import FACE_RECIPES
 from cubeling.characters.face.expressions import EXPRESSIONS
-from cubeling.characters.speech.phrases import Phrase
+from cubeling.characters.speech.prosody.phrases import Phrase
 from cubeling.characters.speech.speech import Utterance
 from cubeling.toml_file import bundled
 

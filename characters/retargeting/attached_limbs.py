@@ -11,7 +11,7 @@ import numpy as np
 from cubeling.characters.ik.legs import find_legs
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.limb_ends import with_more_joints
-from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.feet.leg_ik import place_ankle
 from cubeling.characters.retargeting.measures import foot_gap
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.motion.clip import Clip
-from cubeling.characters.retargeting.footskate import (
+from cubeling.characters.retargeting.feet.footskate import (
     ball_positions,
     find_foot_contacts,
     hold_feet_in_contact,
 )
-from cubeling.characters.retargeting.ground_motion import find_ground_motion
+from cubeling.characters.retargeting.feet.ground_motion import find_ground_motion
 from cubeling.characters.retargeting.mapping import map_joints
 from cubeling.characters.retargeting.rig import Rig, leg_pairs
 from cubeling.characters.retargeting.root import has_root_joint, root_trajectory

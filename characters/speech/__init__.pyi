@@ -6,29 +6,30 @@ from cubeling.characters.control.speech_profile import (
 )
 from cubeling.characters.face.complexion import Complexion as Complexion, blood_of as blood_of
 from cubeling.characters.face.visemes.sets import viseme_sets as viseme_sets
-from cubeling.characters.speech.accent_labels import (
-    LabelAgreement as LabelAgreement,
-    read_accent_labels as read_accent_labels,
-)
-from cubeling.characters.speech.accents import (
-    AccentSettings as AccentSettings,
-    accents_of as accents_of,
-    syllable_nuclei as syllable_nuclei,
-)
 from cubeling.characters.speech.alignment.by_voice import align as align
 from cubeling.characters.speech.alignment.sphinx import align_with_sphinx as align_with_sphinx
 from cubeling.characters.speech.audio import read_speech as read_speech, resample as resample
-from cubeling.characters.speech.contours import (
-    Prosody as Prosody,
-    measure_prosody as measure_prosody,
-)
 from cubeling.characters.speech.mouth import (
     MouthTracker as MouthTracker,
     phones_from_sound as phones_from_sound,
 )
-from cubeling.characters.speech.onsets import OnsetDetector as OnsetDetector
 from cubeling.characters.speech.phones import SoundClass as SoundClass, sound_class as sound_class
-from cubeling.characters.speech.prosody import utterance_of as utterance_of
+from cubeling.characters.speech.prosody.accent_labels import (
+    LabelAgreement as LabelAgreement,
+    read_accent_labels as read_accent_labels,
+)
+from cubeling.characters.speech.prosody.accents import (
+    AccentSettings as AccentSettings,
+    accents_of as accents_of,
+    syllable_nuclei as syllable_nuclei,
+)
+from cubeling.characters.speech.prosody.analysis import utterance_of as utterance_of
+from cubeling.characters.speech.prosody.contours import (
+    Prosody as Prosody,
+    measure_prosody as measure_prosody,
+)
+from cubeling.characters.speech.prosody.onsets import OnsetDetector as OnsetDetector
+from cubeling.characters.speech.prosody.stress import stressed_like as stressed_like
 from cubeling.characters.speech.saying import say as say
 from cubeling.characters.speech.speech import (
     SILENCE as SILENCE,
@@ -37,7 +38,6 @@ from cubeling.characters.speech.speech import (
     Speech as Speech,
     Utterance as Utterance,
 )
-from cubeling.characters.speech.stress import stressed_like as stressed_like
 from cubeling.characters.speech.tagged_text import (
     TEXT_FILE as TEXT_FILE,
     TaggedText as TaggedText,

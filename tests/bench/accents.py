@@ -37,13 +37,13 @@ from parselmouth.praat import call
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.characters.speech.accents import AccentSettings, detect_accents
 from cubeling.characters.speech.alignment import align
 from cubeling.characters.speech.audio import read_speech
-from cubeling.characters.speech.contours import measure_prosody
 from cubeling.characters.speech.phones import is_vowel
+from cubeling.characters.speech.prosody.accents import AccentSettings, detect_accents
+from cubeling.characters.speech.prosody.contours import measure_prosody
+from cubeling.characters.speech.prosody.strength import AccentMeasures, ev, ev2, matthews, psi
 from cubeling.characters.speech.speech import Phone, Samples, Speech
-from cubeling.characters.speech.strength import AccentMeasures, ev, ev2, matthews, psi
 from cubeling.characters.speech.voices import Voice, espeak
 
 RATE = 16_000

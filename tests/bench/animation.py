@@ -43,7 +43,7 @@ from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.motion.layers import overlaid
 from cubeling.characters.speech.mouth import phones_from_sound
-from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.prosody.analysis import utterance_of
 from cubeling.characters.speech.speech import Speech
 
 FRAMES = 600

@@ -45,7 +45,7 @@ from cubeling.characters import Character, Clip
 from cubeling.characters.body.capsules import CapsuleBody
 from cubeling.characters.control.controllers.recordings import read_motions
 from cubeling.characters.skeleton import rotations
-from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.prosody.analysis import utterance_of
 from cubeling.characters.speech.speech import Accent
 from cubeling.characters.speech.voices import VoiceError, espeak
 from cubeling.characters.synthesis.gestures.graph import sweep

@@ -52,7 +52,7 @@ from cubeling.characters.model.character import CHARACTER_READERS
 from cubeling.characters.motion import stack
 from cubeling.characters.rendering import PortraitRenderer, create_context
 from cubeling.characters.retargeting import with_lent_motions
-from cubeling.characters.retargeting.footskate import find_foot_contacts
+from cubeling.characters.retargeting.feet.footskate import find_foot_contacts
 from cubeling.characters.retargeting.hanging_arms import share_inside
 from cubeling.characters.retargeting.locomotion.grading import MAX_SINKING_CM, MAX_SLIDE_CM_S
 from cubeling.characters.retargeting.measures import (

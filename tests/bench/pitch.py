@@ -19,8 +19,8 @@ from rich.console import Console
 from rich.table import Table
 
 from cubeling.characters.speech.audio import read_speech, resample
-from cubeling.characters.speech.contours import measure_prosody
-from cubeling.characters.speech.pitch import PitchSettings, track_pitch
+from cubeling.characters.speech.prosody.contours import measure_prosody
+from cubeling.characters.speech.prosody.pitch import PitchSettings, track_pitch
 from cubeling.characters.speech.speech import Speech
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "data" / "speech"

@@ -18,8 +18,8 @@ from rich.table import Table
 from cubeling.characters import Character, CharacterError, Clip
 from cubeling.characters.model.bind_pose import with_bind_pose
 from cubeling.characters.retargeting import Recording, load_recording, retarget
-from cubeling.characters.retargeting.footskate import ball_positions, find_foot_contacts
-from cubeling.characters.retargeting.ground_motion import find_ground_motion
+from cubeling.characters.retargeting.feet.footskate import ball_positions, find_foot_contacts
+from cubeling.characters.retargeting.feet.ground_motion import find_ground_motion
 from cubeling.characters.retargeting.locomotion.grading import MAX_BONE_CHANGE, MAX_KNEE_EXCESS_DEG
 from cubeling.characters.retargeting.locomotion.recorded_gait import extract_gait
 from cubeling.characters.retargeting.measures import bone_change, knee_quantiles, sole_dip

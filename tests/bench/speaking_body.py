@@ -23,10 +23,10 @@ from cubeling.characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from cubeling.characters.face.lids import Lids
 from cubeling.characters.smoothing import gaussian_smooth
 from cubeling.characters.speech.audio import read_speech
-from cubeling.characters.speech.contours import measure_prosody
 from cubeling.characters.speech.mouth import phones_from_sound
-from cubeling.characters.speech.phrases import phrases_of
-from cubeling.characters.speech.prosody import LOUDNESS_EXPONENT, utterance_of
+from cubeling.characters.speech.prosody.analysis import LOUDNESS_EXPONENT, utterance_of
+from cubeling.characters.speech.prosody.contours import measure_prosody
+from cubeling.characters.speech.prosody.phrases import phrases_of
 from cubeling.characters.speech.saying import say
 from cubeling.characters.speech.speech import Utterance
 from cubeling.characters.speech.tagged_text import TaggedText

@@ -64,7 +64,7 @@ from cubeling.characters.model.character import CHARACTER_READERS
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.rendering import create_context
 from cubeling.characters.retargeting import Recording, load_recording, make_locomotion, retarget
-from cubeling.characters.retargeting.footskate import find_foot_contacts
+from cubeling.characters.retargeting.feet.footskate import find_foot_contacts
 from cubeling.characters.retargeting.locomotion.grading import (
     MAX_BONE_CHANGE,
     MAX_FACING_ERROR_DEG,

@@ -45,7 +45,7 @@ from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.control.loading import load_to_play
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.speech.mouth import phones_from_sound
-from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.prosody.analysis import utterance_of
 from cubeling.characters.speech.speech import GestureSpan, Speech
 
 MAX_RATIO = 1.2

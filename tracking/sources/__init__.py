@@ -14,11 +14,11 @@ from cubeling.tracking.sources.base import BufferedFrames, FrameSource, LiveFram
 from cubeling.tracking.sources.device import Clock, Health
 
 SCHEME_MODULES = {
-    "camera": "cubeling.tracking.sources.camera",
-    "http": "cubeling.tracking.sources.http",
-    "https": "cubeling.tracking.sources.http",
-    "rtsp": "cubeling.tracking.sources.rtsp",
-    "rtsps": "cubeling.tracking.sources.rtsp",
+    "camera": "cubeling.tracking.sources.webcam.camera",
+    "http": "cubeling.tracking.sources.streams.http",
+    "https": "cubeling.tracking.sources.streams.http",
+    "rtsp": "cubeling.tracking.sources.streams.rtsp",
+    "rtsps": "cubeling.tracking.sources.streams.rtsp",
     "synthetic": "cubeling.tracking.synthetic.source",
 }
 """Module that opens the URIs of a scheme."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cubeling.tracking.sources.options import UriOptions
+from cubeling.tracking.sources.webcam.options import UriOptions
 
 
 @dataclass(frozen=True)

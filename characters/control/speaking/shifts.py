@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cubeling.characters.speech.phrases import Phrase
+from cubeling.characters.speech.prosody.phrases import Phrase
 
 AT_TOPIC = 0.84
 """Probability of a shift at a change of topic."""

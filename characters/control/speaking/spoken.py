@@ -16,7 +16,7 @@ from cubeling.characters.control.speaking.stance import stance_movement
 from cubeling.characters.control.speaking.state import SpeakingState
 from cubeling.characters.face.word_emotion import emotion_at, emotions_of
 from cubeling.characters.skeleton.pose import Array
-from cubeling.characters.speech.phrases import Phrase, phrases_of
+from cubeling.characters.speech.prosody.phrases import Phrase, phrases_of
 from cubeling.characters.speech.speech import Utterance
 
 

@@ -9,7 +9,7 @@ from cubeling.characters.behaviour.realization.stances import Stance, StanceJoin
 from cubeling.characters.control.speaking.beats import pulses
 from cubeling.characters.skeleton.pose import Array
 from cubeling.characters.smoothing import smoothstep
-from cubeling.characters.speech.phrases import Phrase
+from cubeling.characters.speech.prosody.phrases import Phrase
 from cubeling.characters.speech.speech import Accent
 
 BEAT_KEYS = ((-0.7, 0.0), (-0.44, -0.4), (-0.22, 1.0), (0.42, 0.0))

@@ -10,12 +10,12 @@ import numpy as np
 
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.motion import RootDelta
-from cubeling.characters.retargeting.footskate import (
+from cubeling.characters.retargeting.feet.footskate import (
     FootContacts,
     ball_positions,
     hold_feet_in_contact,
 )
-from cubeling.characters.retargeting.ground_motion import GroundMotion, arc, transform
+from cubeling.characters.retargeting.feet.ground_motion import GroundMotion, arc, transform
 from cubeling.characters.retargeting.rig import LegJoints, Rig, global_rotations
 from cubeling.characters.retargeting.root import move_to_trajectory
 from cubeling.characters.skeleton import rotations

@@ -18,7 +18,7 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.model.mirroring import mirror_of
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.mirror import Mirror
-from cubeling.characters.retargeting.footskate import FootContacts
+from cubeling.characters.retargeting.feet.footskate import FootContacts
 from cubeling.characters.retargeting.locomotion.cycle import (
     LoopCut,
     close_loop,

@@ -12,8 +12,8 @@ from cubeling.characters.locomotion.gaits import MIN_CYCLE_LENGTH
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.motion import RootDelta
-from cubeling.characters.retargeting.footskate import FootContacts, find_foot_contacts
-from cubeling.characters.retargeting.ground_motion import find_ground_motion
+from cubeling.characters.retargeting.feet.footskate import FootContacts, find_foot_contacts
+from cubeling.characters.retargeting.feet.ground_motion import find_ground_motion
 from cubeling.characters.retargeting.locomotion.cycle import (
     LoopCut,
     close_loop,

@@ -28,8 +28,8 @@ from typing import IO, Any
 import numpy as np
 
 from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.prosody.stress import with_stress
 from cubeling.characters.speech.speech import SILENCE, Phone, Speech, Word
-from cubeling.characters.speech.stress import with_stress
 
 TIMEOUT_S = 10.0
 """How long a voice may be silent before it counts as dead [s]."""

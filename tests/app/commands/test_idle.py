@@ -12,7 +12,7 @@ import pytest
 from cubeling.affect import region_of
 from cubeling.characters import Animator, Character, CharacterCommand, Clip, Pose
 from cubeling.characters.control.controllers.idle import standing_as
-from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.feet.leg_ik import place_ankle
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.synthesis.idle.recordings import read_standing
 from cubeling.characters.synthesis.idle.storage import load_person, save_person

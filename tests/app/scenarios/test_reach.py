@@ -10,17 +10,17 @@ import pytest
 from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings
 from cubeling.app.pipeline.table.props import GRIP, BodyParts, PosedBody, Thing
 from cubeling.app.pipeline.table.situation import Situation
-from cubeling.app.scenarios.reach import Reach
-from cubeling.app.scenarios.reach_behaviour import GESTURES
-from cubeling.app.scenarios.reach_gifts import AT_HAND_M
-from cubeling.app.scenarios.reach_intents import (
+from cubeling.app.scenarios.reach.behaviour import GESTURES
+from cubeling.app.scenarios.reach.gifts import AT_HAND_M
+from cubeling.app.scenarios.reach.intents import (
     LEAVE_S,
     Ongoing,
     bundled_gesture,
     gesture_times,
     leave,
 )
-from cubeling.app.scenarios.reach_places import nearest_point_of_cube, sides_of_cube
+from cubeling.app.scenarios.reach.places import nearest_point_of_cube, sides_of_cube
+from cubeling.app.scenarios.reach.scenario import Reach
 from cubeling.characters import Animator, Character
 from cubeling.characters.behaviour.intents import ReachIntent, Times
 from cubeling.characters.rendering.toys import TOYS, toy

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from cubeling.app.scenarios.reach_catching import (
+from cubeling.app.scenarios.reach.catching import (
     EASIER,
     LOST_S,
     SHADE_S,

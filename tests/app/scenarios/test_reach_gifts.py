@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.table.props import GRIP
-from cubeling.app.scenarios.reach_gift import HOP_M, HOP_S, SETTLE_S
-from cubeling.app.scenarios.reach_gifts import AT_HAND_M, HOMES, PATIENCE_S, REJOICE_S, Gifts
+from cubeling.app.scenarios.reach.gift import HOP_M, HOP_S, SETTLE_S
+from cubeling.app.scenarios.reach.gifts import AT_HAND_M, HOMES, PATIENCE_S, REJOICE_S, Gifts
 
 FRAME = 1 / 30
 EDGE = 0.06

@@ -6,16 +6,16 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from cubeling.app.scenarios.reach import ICONS
-from cubeling.app.scenarios.reach_catching import (
+from cubeling.app.scenarios.reach.catching import (
     EASY,
     HARD,
     Catching,
     Doing as CatchingDoing,
     Prospect,
 )
-from cubeling.app.scenarios.reach_gifts import Doing as GiftDoing
-from cubeling.app.scenarios.reach_hints import facts_of, hint_of
+from cubeling.app.scenarios.reach.gifts import Doing as GiftDoing
+from cubeling.app.scenarios.reach.hints import facts_of, hint_of
+from cubeling.app.scenarios.reach.scenario import ICONS
 from cubeling.tracking import has_icon
 
 EDGE, BODY = 0.06, 0.17

@@ -13,7 +13,7 @@ from cubeling.characters.control.speaking.spoken import SpokenBody, SpokenMoveme
 from cubeling.characters.control.speech_profile import SpeechProfile
 from cubeling.characters.face.blink import BlinkTimer
 from cubeling.characters.face.word_emotion import emotion_at, emotions_of, face_of, told_emotion
-from cubeling.characters.speech.phrases import Phrase, phrases_of
+from cubeling.characters.speech.prosody.phrases import Phrase, phrases_of
 from cubeling.characters.speech.speech import (
     Accent,
     GestureSpan,

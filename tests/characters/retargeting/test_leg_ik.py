@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cubeling.characters import Character, Pose
-from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.feet.leg_ik import place_ankle
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
 

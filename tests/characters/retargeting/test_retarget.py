@@ -7,8 +7,8 @@ import pytest
 from cubeling.characters import Character, CharacterError, Pose, Skeleton
 from cubeling.characters.formats import load_motion
 from cubeling.characters.retargeting import retarget
-from cubeling.characters.retargeting.footskate import find_foot_contacts
-from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.feet.footskate import find_foot_contacts
+from cubeling.characters.retargeting.feet.leg_ik import place_ankle
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy

@@ -8,15 +8,15 @@ import pytest
 
 from cubeling.characters import Character, Mesh, Pose
 from cubeling.characters.retargeting import retarget
-from cubeling.characters.retargeting.footskate import (
+from cubeling.characters.retargeting.feet.footskate import (
     FootContacts,
     ball_positions,
     find_foot_contacts,
     hold_feet_in_contact,
 )
-from cubeling.characters.retargeting.ground_motion import GroundMotion
-from cubeling.characters.retargeting.heel_rise import Heels
-from cubeling.characters.retargeting.hips_shift import HeldLegs, with_listing_hips
+from cubeling.characters.retargeting.feet.ground_motion import GroundMotion
+from cubeling.characters.retargeting.feet.heel_rise import Heels
+from cubeling.characters.retargeting.feet.hips_shift import HeldLegs, with_listing_hips
 from cubeling.characters.retargeting.measures import knee_quantiles, sole_dip
 from cubeling.characters.retargeting.rig import Rig
 from cubeling.characters.retargeting.transfer import turns_from_rest

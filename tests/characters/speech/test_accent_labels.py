@@ -3,7 +3,7 @@
 import pytest
 
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.speech.accent_labels import LabelAgreement, read_accent_labels
+from cubeling.characters.speech.prosody.accent_labels import LabelAgreement, read_accent_labels
 from cubeling.characters.speech.speech import Accent, Word
 from cubeling.characters.speech.textgrid import Interval, TextGrid, Tier, write_textgrid
 

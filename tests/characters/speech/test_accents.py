@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from cubeling.characters.speech.accents import AccentSettings, accents_of, detect_accents
-from cubeling.characters.speech.contours import Prosody, measure_prosody
-from cubeling.characters.speech.prosody import utterance_of
-from cubeling.characters.speech.speech import Phone, Speech
-from cubeling.characters.speech.strength import (
+from cubeling.characters.speech.prosody.accents import AccentSettings, accents_of, detect_accents
+from cubeling.characters.speech.prosody.analysis import utterance_of
+from cubeling.characters.speech.prosody.contours import Prosody, measure_prosody
+from cubeling.characters.speech.prosody.strength import (
     AccentMeasures,
     ev,
     ev2,
@@ -18,6 +17,7 @@ from cubeling.characters.speech.strength import (
     measure_accents,
     psi,
 )
+from cubeling.characters.speech.speech import Phone, Speech
 from cubeling.characters.speech.tagged_text import TaggedText
 from tests.examples import examples
 

@@ -5,8 +5,8 @@ import parselmouth
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from cubeling.characters.speech.contours import measure_prosody
-from cubeling.characters.speech.pitch import PitchSettings, track_pitch
+from cubeling.characters.speech.prosody.contours import measure_prosody
+from cubeling.characters.speech.prosody.pitch import PitchSettings, track_pitch
 from tests.examples import examples
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.characters.speech.accents import detect_accents
 from cubeling.characters.speech.phones import is_vowel
-from cubeling.characters.speech.prosody import utterance_of
+from cubeling.characters.speech.prosody.accents import detect_accents
+from cubeling.characters.speech.prosody.analysis import utterance_of
+from cubeling.characters.speech.prosody.stress import stressed_like, with_stress
 from cubeling.characters.speech.speech import Phone, Speech, Word
-from cubeling.characters.speech.stress import stressed_like, with_stress
 from cubeling.characters.speech.voices import espeak
 from cubeling.characters.speech.voices.espeak import espeak_installed
 

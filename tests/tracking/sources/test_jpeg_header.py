@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.tracking.sources.camera_controls import brightness
 from cubeling.tracking.sources.device import (
     MAX_IMAGE_PX,
     decode_jpeg,
@@ -15,6 +14,7 @@ from cubeling.tracking.sources.device import (
     is_decodable,
     jpeg_size,
 )
+from cubeling.tracking.sources.webcam.camera_controls import brightness
 from tests.tracking.sources.live import SIZE, claims, jpeg
 
 

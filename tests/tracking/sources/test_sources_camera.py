@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cubeling.tracking import open_source
-from cubeling.tracking.sources.camera import MJPG, CameraSource
+from cubeling.tracking.sources.webcam.camera import MJPG, CameraSource
 from tests.tracking.sources.live import SIZE, fails, fast_clock, jpeg, picture
 
 TEST_TIMEOUT_S = 10.0

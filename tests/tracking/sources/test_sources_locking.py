@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from cubeling.tracking import TrackingError, open_source
-from cubeling.tracking.sources.camera import CameraOptions, CameraSource, CaptureDevice
-from cubeling.tracking.sources.camera_controls import MAX_SETTLING_IMAGES
 from cubeling.tracking.sources.device import DeviceSetting
+from cubeling.tracking.sources.webcam.camera import CameraOptions, CameraSource, CaptureDevice
+from cubeling.tracking.sources.webcam.camera_controls import MAX_SETTLING_IMAGES
 
 SIZE = (64, 48)
 

@@ -3,7 +3,11 @@
 import pytest
 from hypothesis import given, strategies as st
 
-from cubeling.tracking.sources.multipart import MAX_PART_BYTES, MultipartError, MultipartParser
+from cubeling.tracking.sources.streams.multipart import (
+    MAX_PART_BYTES,
+    MultipartError,
+    MultipartParser,
+)
 
 bodies = st.lists(
     st.binary(max_size=60)

@@ -9,7 +9,7 @@ from urllib.request import parse_http_list, parse_keqv_list
 import pytest
 
 from cubeling.tracking import TrackingError, open_source
-from cubeling.tracking.sources.http import HttpSource
+from cubeling.tracking.sources.streams.http import HttpSource
 from tests.tracking.sources.live import SIZE, fails, fast_clock, jpeg
 
 TEST_TIMEOUT_S = 10.0

@@ -11,7 +11,7 @@ from cubeling.tracking.sources.base import LiveFrames
 from cubeling.tracking.sources.capture import MAX_ABANDONED_THREADS, STUCK_TIMEOUT_S
 from cubeling.tracking.sources.capture_timing import DISTRUST_IMAGES, ExposureClock, QueueGauge
 from cubeling.tracking.sources.live import LiveSource
-from cubeling.tracking.sources.video_device import persistent_path
+from cubeling.tracking.sources.webcam.video_device import persistent_path
 
 TEST_TIMEOUT_S = 10.0
 """Real time after which a test that waits for another thread has failed."""

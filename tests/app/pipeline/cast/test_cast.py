@@ -13,7 +13,7 @@ from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.attention import Attention, Company
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
-from cubeling.app.scenarios.reach_gifts import HOMES
+from cubeling.app.scenarios.reach.gifts import HOMES
 from cubeling.app.session import SessionOptions, session_info
 from cubeling.characters import Character, CharacterCommand
 from cubeling.tracking import CubeModel, CubeState, Frame

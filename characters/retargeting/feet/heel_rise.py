@@ -10,8 +10,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.retargeting.ground_motion import GroundMotion
-from cubeling.characters.retargeting.hips_shift import HeldLegs
+from cubeling.characters.retargeting.feet.ground_motion import GroundMotion
+from cubeling.characters.retargeting.feet.hips_shift import HeldLegs
 from cubeling.characters.retargeting.rig import LegJoints, Rig
 from cubeling.characters.retargeting.transfer import turns_from_rest, with_turns_from_rest
 from cubeling.characters.skeleton import rotations

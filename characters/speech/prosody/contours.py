@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.speech.frames import frame_blocks, runs
-from cubeling.characters.speech.pitch import PitchSettings, track_pitch
+from cubeling.characters.speech.prosody.pitch import PitchSettings, track_pitch
 from cubeling.characters.speech.speech import Samples
 
 INTENSITY_WINDOW_S = 0.04

@@ -7,7 +7,7 @@ import numpy as np
 
 from cubeling.tracking.geometry.arrays import Image
 from cubeling.tracking.sources.device import DeviceSetting, is_decodable
-from cubeling.tracking.sources.video_device import VideoCapture
+from cubeling.tracking.sources.webcam.video_device import VideoCapture
 
 SETTLING_IMAGES = 30
 """Number of images before anything is locked, so that the automatic controls can settle."""

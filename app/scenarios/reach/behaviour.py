@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cubeling.app.pipeline.table.props import GRIP, PosedBody, Side
-from cubeling.app.scenarios.reach_intents import Ongoing, bundled_gesture, gesture_times
-from cubeling.app.scenarios.reach_places import Point, in_front, look_about
+from cubeling.app.scenarios.reach.intents import Ongoing, bundled_gesture, gesture_times
+from cubeling.app.scenarios.reach.places import Point, in_front, look_about
 from cubeling.characters.behaviour import (
     BehaviourIntent,
     GazeIntent,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.speech.contours import Prosody
+from cubeling.characters.speech.prosody.contours import Prosody
 
 FALL_SEMITONES = 1.0
 """An accent falls (H+L*) if its pitch ends so far below its beginning [semitones]."""

@@ -24,7 +24,7 @@ from urllib.request import (
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.sources.device import Clock, DeviceSetting
 from cubeling.tracking.sources.live import LiveSource
-from cubeling.tracking.sources.multipart import MultipartError, MultipartParser
+from cubeling.tracking.sources.streams.multipart import MultipartError, MultipartParser
 
 READ_SIZE_BYTES = 64 * 1024
 

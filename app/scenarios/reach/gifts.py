@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.table.props import GRIP, PosedBody, Side, Thing
-from cubeling.app.scenarios.reach_gift import Gift
+from cubeling.app.scenarios.reach.gift import Gift
 
 Point = NDArray[np.float64]
 

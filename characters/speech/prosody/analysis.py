@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cubeling.characters.speech.accents import AccentSettings, accents_of, syllable_nuclei
-from cubeling.characters.speech.contours import Prosody, measure_prosody
+from cubeling.characters.speech.prosody.accents import AccentSettings, accents_of, syllable_nuclei
+from cubeling.characters.speech.prosody.contours import Prosody, measure_prosody
+from cubeling.characters.speech.prosody.strength import scale_between_quantiles
 from cubeling.characters.speech.speech import Phone, Speech, Syllable, Utterance
-from cubeling.characters.speech.strength import scale_between_quantiles
 from cubeling.characters.speech.tagged_text import TaggedText
 
 LOUDNESS_EXPONENT = 0.6

@@ -10,11 +10,11 @@ from cubeling.app.pipeline.table.situation import PLAYER_POSITION, Situation
 from cubeling.app.scenarios.follow import gait
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
-from cubeling.app.scenarios.reach_behaviour import ReachingBody, ReachScene
-from cubeling.app.scenarios.reach_catching import ARRIVED_M, HARD, Catching, Prospect
-from cubeling.app.scenarios.reach_gifts import HOMES, Gifts
-from cubeling.app.scenarios.reach_hints import Facts, facts_of, hint_of
-from cubeling.app.scenarios.reach_places import (
+from cubeling.app.scenarios.reach.behaviour import ReachingBody, ReachScene
+from cubeling.app.scenarios.reach.catching import ARRIVED_M, HARD, Catching, Prospect
+from cubeling.app.scenarios.reach.gifts import HOMES, Gifts
+from cubeling.app.scenarios.reach.hints import Facts, facts_of, hint_of
+from cubeling.app.scenarios.reach.places import (
     Point,
     around,
     gap,

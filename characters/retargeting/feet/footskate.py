@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.contacts import find_contacts, spans
-from cubeling.characters.retargeting.foot_path import FootPath
-from cubeling.characters.retargeting.ground_motion import GroundMotion
-from cubeling.characters.retargeting.heel_rise import Heels
-from cubeling.characters.retargeting.hips_shift import (
+from cubeling.characters.retargeting.feet.foot_path import FootPath
+from cubeling.characters.retargeting.feet.ground_motion import GroundMotion
+from cubeling.characters.retargeting.feet.heel_rise import Heels
+from cubeling.characters.retargeting.feet.hips_shift import (
     HeldLegs,
     following_feet,
     upper_envelope,
     with_listing_hips,
     with_moved_hips,
 )
-from cubeling.characters.retargeting.leg_ik import place_ankle
+from cubeling.characters.retargeting.feet.leg_ik import place_ankle
 from cubeling.characters.retargeting.rig import LegJoints, Rig
 from cubeling.characters.retargeting.soles import stretch_to_fit, tilt_to_fit, tilts
 from cubeling.characters.retargeting.transfer import (

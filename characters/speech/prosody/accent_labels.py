@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.errors import CharacterError
+from cubeling.characters.speech.prosody.strength import matthews
 from cubeling.characters.speech.speech import Accent, Word
-from cubeling.characters.speech.strength import matthews
 from cubeling.characters.speech.textgrid import (
     PAUSES,
     PHONE_TIERS,
@@ -28,7 +28,7 @@ LABELS_FILE = FileKind(
     (".csv",),
     CharacterError,
     10_000_000,
-    "cubeling.characters.speech.accent_labels:read_accent_labels",
+    "cubeling.characters.speech.prosody.accent_labels:read_accent_labels",
 )
 """A table of times; labels may also be a tier of a TextGrid."""
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from cubeling.app.scenarios.reach_catching import EASY, HARD, MOVED_M, Catching, Prospect
+from cubeling.app.scenarios.reach.catching import EASY, HARD, MOVED_M, Catching, Prospect
 
 
 @dataclass(frozen=True)

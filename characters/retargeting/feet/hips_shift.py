@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.retargeting.foot_path import FootPath
-from cubeling.characters.retargeting.ground_motion import GroundMotion
+from cubeling.characters.retargeting.feet.foot_path import FootPath
+from cubeling.characters.retargeting.feet.ground_motion import GroundMotion
 from cubeling.characters.retargeting.rig import LegJoints, Rig
 from cubeling.characters.retargeting.transfer import (
     in_common_axes,

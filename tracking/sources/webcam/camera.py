@@ -12,11 +12,11 @@ import numpy as np
 
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.arrays import Image
-from cubeling.tracking.sources.camera_controls import EXPOSURE, FOCUS, ControlLock
 from cubeling.tracking.sources.device import Clock, DeviceSetting
 from cubeling.tracking.sources.live import LiveSource
-from cubeling.tracking.sources.options import UriOptions
-from cubeling.tracking.sources.video_device import (
+from cubeling.tracking.sources.webcam.camera_controls import EXPOSURE, FOCUS, ControlLock
+from cubeling.tracking.sources.webcam.options import UriOptions
+from cubeling.tracking.sources.webcam.video_device import (
     VideoCapture,
     check_present,
     open_capture,

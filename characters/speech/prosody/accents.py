@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.speech.contours import Prosody, ProsodySettings, measure_prosody
 from cubeling.characters.speech.phones import is_vowel
+from cubeling.characters.speech.prosody.contours import Prosody, ProsodySettings, measure_prosody
 from cubeling.characters.speech.speech import Accent, Phone, Samples
 
 LOCAL_S = 1.0

@@ -1,0 +1,1 @@
+"""`reach`: the character reaches for the cube, holds it, and gives things."""

@@ -1,0 +1,1 @@
+"""Prosody: pitch, strength, stress and pitch accents of recorded speech."""
