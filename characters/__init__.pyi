@@ -39,6 +39,7 @@ from cubeling.characters.control.layers.upper_body import (
 )
 from cubeling.characters.control.loading import load_to_play as load_to_play
 from cubeling.characters.control.tagged_gestures import (
+    GestureCalls as GestureCalls,
     known_gestures as known_gestures,
     meanings_of as meanings_of,
 )

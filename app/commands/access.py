@@ -59,21 +59,21 @@ Ca = Annotated[
 @contextmanager
 def publisher(
     url: str | None, name: str | None, site: str, password_file: Path | None, ca: Path | None
-) -> Iterator[CastPublisher | None]:
+) -> Iterator[tuple[CastPublisher, ...]]:
     """Connect a player if the options ask for one, and disconnect it at the end.
 
     Raises RobotError or AppError if an option is wrong or missing, or the broker refuses.
     """
     check_publisher(url, name)
     if url is None or name is None:
-        yield None
+        yield ()
         return
     from cubeling.app.running.network import Network
     from cubeling.app.running.players import CastPublisher
     from cubeling.robot.network import Credentials
 
     with Network(url, site, Credentials(None, password_file, ca)) as network:
-        yield CastPublisher(network, name, on_problem=report_problem)
+        yield (CastPublisher(network, name, on_problem=report_problem),)
 
 
 def check_publisher(url: str | None, name: str | None) -> None:

@@ -7,6 +7,7 @@ from typing import Protocol, runtime_checkable
 from cubeling.affect import Emotion, Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import check_speed_map, check_turns
+from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.pipeline.table.props import Thing
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.pipeline.table.spoken_line import LEAD, Lines, SpokenLine
@@ -41,6 +42,14 @@ class Inputs:
     lines_of_others: Lines = field(default_factory=dict)
     """What the rest of the cast wants to say from this frame on, by their names."""
 
+    acts: tuple[Act, ...] = ()
+    """What the characters are told to do by somebody beside the player; a scenario is told of none,
+    as each of the cast does it whatever its scenario decides."""
+
+    marks: tuple[str, ...] = ()
+    """Names of the marks that others set in this frame, see `Mark.of`: they are recorded as events,
+    as those of the player are."""
+
     @property
     def lines(self) -> Lines:
         """What all of the cast want to say from this frame on."""
@@ -73,7 +82,7 @@ class Reply:
     """What is said; tags name gestures."""
 
     language: str
-    """Code of its language."""
+    """Code of its language; "" for the one in which the character speaks."""
 
 
 @dataclass(frozen=True)

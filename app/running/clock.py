@@ -67,6 +67,11 @@ class Pace:
         """Show the next frame at once, as after a pause."""
         self._offset = self._leaving_out_since = None
 
+    @property
+    def due_from_timestamp(self) -> float:
+        """What added to a frame's timestamp says when it is due, by the clock [s]."""
+        return self._offset or 0.0
+
     def wait(self, timestamp: float) -> bool:
         """Wait until a frame is due; return False if it is too late and is not to be drawn."""
         now = self._clock()

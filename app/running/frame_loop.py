@@ -2,6 +2,7 @@
 
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import ReplayInputs, RobotView, Step
+from cubeling.app.running.events import events_of
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.quality_control import AUTO_QUALITY, QualityControl
 from cubeling.app.running.summary import Summary
@@ -17,7 +18,7 @@ def both_asked(first: Inputs, then: Inputs) -> Inputs:
 
     >>> both_asked(Inputs(clear=True, inside=True), Inputs(scenario="reach", inside=True))
     Inputs(clear=True, scenario='reach', line=None, inside=False, typed='', hush=False, \
-lines_of_others={})
+lines_of_others={}, acts=(), marks=())
     """
     both = Inputs(
         clear=first.clear or then.clear,
@@ -25,6 +26,8 @@ lines_of_others={})
         inside=first.inside != then.inside,
         typed=" ".join(filter(None, (first.typed, then.typed))),
         hush=first.hush or then.hush,
+        acts=(*first.acts, *then.acts),
+        marks=(*first.marks, *then.marks),
     )
     return both.with_lines({**first.lines, **then.lines})
 
@@ -56,6 +59,7 @@ class FrameLoop:
         self._read_recorded(frame)
         recorded = self._take_recorded()
         inputs = both_asked(Inputs() if recorded.clear else self._inputs, recorded)
+        inputs = session.admit(inputs)
         session.change_scenario(inputs.scenario)
         if session.recording is not None:
             frame = session.recording.encode(frame)
@@ -107,12 +111,11 @@ class FrameLoop:
         # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
         self.robot = view = session.robot_view()
         self._feel(step)
-        if session.player is not None:
-            session.player.publish(step.cast)
         lap("robot")
         if session.recording is not None:
             session.recording.write(step, inputs)
             lap("recording")
+        self._tell_instruments(step, inputs)
         session.observe()
         session.monitor.update(step, view, session.playground)
         if step.tracker_error and not self._summary.failed_frames:
@@ -131,6 +134,19 @@ class FrameLoop:
         self._summary.add(step, view, seconds, follows=follows)
         if self._quality is not None and seconds is not None:
             session.playground.quality = self._quality.update(seconds)
+
+    def _tell_instruments(self, step: Step, inputs: Inputs) -> None:
+        """Let others follow a step, and take what they ask for."""
+        session, now = self._session, step.frame.timestamp
+        cast = [each.character for each in session.playground.cast.members]
+        taken = now + session.taken_from_timestamp
+        for instrument in session.instruments:
+            self._inputs = both_asked(self._inputs, instrument.follow(step, cast, taken))
+        if session.instruments or session.recording is not None:
+            for event in events_of(step, inputs):
+                session.happen(event, now)
+        for name in inputs.marks:
+            session.mark(now, name)
 
     def _feel(self, step: Step) -> None:
         """Let the robots of the players feel what their characters do."""

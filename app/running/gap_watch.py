@@ -115,8 +115,7 @@ class GapWatch:
         self._note(part, f"{part.name} back", timestamp, f"after {gap.seconds:.1f} s")
 
     def _note(self, part: _Part, event: str, timestamp: float, more: str) -> None:
-        if self._session.recording is not None:
-            self._session.recording.event(event, timestamp)
+        self._session.happen(event, timestamp)
         part.lines += 1
         if part.lines <= MAX_LINES:
             self._say(f"{event} {more}")

@@ -1,6 +1,6 @@
 """What is opened for a session, and what may be exchanged in it while it runs."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +13,7 @@ from cubeling.app.pipeline.scenario import Inputs, ListeningScenario
 from cubeling.app.pipeline.step import ReplayInputs, RobotView
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
+from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.kept_lens import LensStore
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.wire_tap import WireTap
@@ -26,10 +27,12 @@ from cubeling.bad_input import BadInputError
 from cubeling.tracking import CubeModel, FrameSource, open_source
 
 if TYPE_CHECKING:
-    from cubeling.app.running.players import CastPublisher
     from cubeling.app.running.recording import SessionRecording
     from cubeling.app.sound import SessionSound
 
+
+MAX_REFUSALS = 16
+"""So many reasons why acts are not carried out are told; nobody reads more."""
 
 OpenCamera = Callable[[str, tuple[int, int]], FrameSource]
 """Opens a camera by its URI, with the width and height to ask for [px]; raises TrackingError."""
@@ -83,8 +86,8 @@ class OpenedSession:
     clock: SessionClock
     """The time that the robot lives by."""
 
-    player: "CastPublisher | None"
-    """Publishes the actions and emotions of the cast, or None."""
+    instruments: Sequence[Instrument]
+    """What else follows the session, and may ask for something; whoever opened them closes them."""
 
     pace: Pace | None
     """Plays a recording at the speed at which it was recorded; None for every frame at once."""
@@ -121,6 +124,49 @@ class OpenedSession:
 
     recorded: list[Path] = field(default_factory=list)
     """The recordings that have been completed before the end of the session."""
+
+    taken_from_timestamp: float = 0.0
+    """What added to a frame's timestamp says when it was taken, by `time.monotonic` [s]."""
+
+    marks: int = 0
+    """Marks that were set since the session, or its recording, began."""
+
+    _marked_at: float = 0.0
+
+    refused: set[str] = field(default_factory=set)
+    """Why acts that instruments asked for were not carried out, each once."""
+
+    def admit(self, inputs: Inputs) -> Inputs:
+        """Return inputs without the acts that the cast cannot do; say once for each why."""
+        if not inputs.acts:
+            return inputs
+        admitted = []
+        for act in inputs.acts:
+            reason = self.playground.cast.refusal(act)
+            if not reason:
+                admitted.append(act)
+            elif reason not in self.refused and len(self.refused) < MAX_REFUSALS:
+                self.refused.add(reason)
+                self.screen.notify(reason)
+        return replace(inputs, acts=tuple(admitted))
+
+    def happen(self, event: str, timestamp: float) -> None:
+        """Tell the recording and the instruments that something has happened [s]."""
+        if self.recording is not None:
+            self.recording.event(event, timestamp)
+        for instrument in self.instruments:
+            instrument.happen(event, timestamp + self.taken_from_timestamp)
+
+    def mark(self, timestamp: float, name: str = "") -> int:
+        """Mark a frame by its timestamp [s], and return the mark's number, from 1."""
+        self.marks, self._marked_at = self.marks + 1, timestamp
+        self.happen(f"mark {self.marks}", timestamp)
+        return self.name_mark(name) if name else self.marks
+
+    def name_mark(self, name: str) -> int:
+        """Say what the last mark is, and return its number; see `Mark.of`."""
+        self.happen(f"mark {self.marks}: {name}", self._marked_at)
+        return self.marks
 
     def recorded_inputs(self, timestamp: float) -> Inputs:
         """Return what is spoken from the frame of a timestamp on [s], and asked for in a replay."""
@@ -268,7 +314,7 @@ class OpenedSession:
             language=self.speaker.language,
             from_within=True,
         )
-        self.playground.fixed = True
+        self.playground.fixed, self.marks = True, 0
 
     def check_recording(self) -> bool:
         """End the recording if the disk has failed, and return whether it has just done so.

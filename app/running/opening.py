@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +16,7 @@ from cubeling.app.pipeline.scenario import CastScenario, ListeningScenario, Nami
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.front_end import FrontEnd
+from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.kept_lens import LensStore
 from cubeling.app.running.opened_session import (
     OpenedSession,
@@ -53,7 +54,6 @@ from cubeling.tracking import (
 if TYPE_CHECKING:
     import moderngl
 
-    from cubeling.app.running.players import CastPublisher
     from cubeling.app.sound import Mixer, SessionSound, SoundOutput
 
 
@@ -67,7 +67,7 @@ def open_session(
     typed: Iterable[str] | None = None,
     until_over: bool = False,
     front_end: FrontEnd | None = None,
-    player: "CastPublisher | None" = None,
+    instruments: Sequence[Instrument] = (),
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
 ) -> Iterator[OpenedSession]:
@@ -94,8 +94,8 @@ def open_session(
         Whether the session ends when the scenario is over.
     front_end
         What shows the pictures instead of a window of this computer; None for a window.
-    player
-        Publishes the character's actions and emotions; the caller closes its network.
+    instruments
+        What else follows the session, in real time; the caller closes them.
     ending
         The card at the end of a recording, in a window and in a video; None for a short one, in a
         window only.
@@ -138,6 +138,8 @@ def open_session(
         character = standing_as(character, options.idle)
     controller = choose_controller(options.controller, character, options.motions)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
+    for each in instruments:
+        each.begin((character, *others))
     with ExitStack() as closing:
         if source is None:
             source = closing.enter_context(open_source(options.source))
@@ -192,14 +194,21 @@ def open_session(
             replay_inputs = replayed.replay_inputs(options.stage)
         wire, clock = WireTap(), SessionClock()
         second_wire = WireTap(f"/robots/{options.robot_names[1]}/wire")
-        pace = _pace(options, source, player)
+        pace = _pace(options, source, instruments)
         stepped = pace is None and not source.live
         replies = isinstance(scenario, ListeningScenario)
         # What another scenario said is no reply.
         said = is_replay(replayed, options) or not replies
         lines = replayed.lines if replayed is not None and said else None
         cast = (character, *others)
-        speaker = open_speaker(options, cast, lines, waits=stepped, replies=replies)
+        speaker = open_speaker(
+            options,
+            cast,
+            lines,
+            waits=stepped,
+            replies=replies,
+            prompted=any(each.speaks for each in instruments),
+        )
         closing.callback(speaker.close)
         recording = None
         if options.record is not None:
@@ -240,7 +249,7 @@ def open_session(
             wire=wire,
             second_wire=second_wire,
             clock=clock,
-            player=player,
+            instruments=instruments,
             pace=pace,
             replayed=replayed,
             replay_inputs=replay_inputs,
@@ -340,12 +349,12 @@ def is_seekable(source: FrameSource) -> bool:
 
 
 def _pace(
-    options: SessionOptions, source: FrameSource, player: "CastPublisher | None"
+    options: SessionOptions, source: FrameSource, instruments: Sequence[Instrument]
 ) -> Pace | None:
     """Return the pace of recorded frames: that of who watches them or lives with them."""
-    # A real robot and other players live in real time.
+    # A real robot and other programs live in real time.
     real = is_real_robot(options.robot) or is_real_robot(options.second_robot)
-    real_time = player is not None or (real and not options.fast)
+    real_time = bool(instruments) or (real and not options.fast)
     if source.live or not (options.windowed or real_time):
         return None
     watched = options.windowed and options.record is None  # what is written has every frame

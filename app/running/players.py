@@ -4,11 +4,12 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from cubeling.app.pipeline.scenario import EmotionTarget
-from cubeling.app.pipeline.step import Performance
+from cubeling.app.pipeline.scenario import EmotionTarget, Inputs
+from cubeling.app.pipeline.step import Step
 from cubeling.app.pipeline.table.spoken_line import LEAD
+from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.network import Network
-from cubeling.characters import CharacterCommand
+from cubeling.characters import Character, CharacterCommand
 from cubeling.robot import RobotError
 from cubeling.robot.network import FURTHER, MAX_AGE_S, BusClient, Player
 
@@ -89,7 +90,7 @@ class PlayerPublisher:
             self.client.endpoint.feel(target.emotion)
 
 
-class CastPublisher:
+class CastPublisher(Instrument):
     """Publishes what each of a cast does: the first as the player, the others as PLAYER:NAME.
 
     The parameters are those of `PlayerPublisher`.
@@ -125,9 +126,10 @@ class CastPublisher:
                 self._on_problem(str(error))
         return self._others[name]
 
-    def publish(self, cast: Sequence[Performance]) -> None:
-        """Publish what the cast does in a frame, the first one first."""
-        for number, seen in enumerate(cast):
+    def follow(self, step: Step, cast: Sequence[Character], taken: float) -> Inputs:
+        """Publish what the cast does in a frame, the first one first; nobody asks for anything."""
+        for number, seen in enumerate(step.cast):
             publisher = self.of(seen.name if number else LEAD)
             if publisher is not None:
                 publisher.publish(seen.command, seen.emotion)
+        return Inputs()

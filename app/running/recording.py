@@ -11,8 +11,6 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.running.provenance import played
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.session import (
-    INSIDE_EVENT,
-    START_OVER_EVENT,
     Recorder,
     SessionOptions,
     frame_encoder,
@@ -63,8 +61,6 @@ class SessionRecording(Closeable):
         self._from_within = from_within
         self._first: float | None = None
         self._last = 0.0
-        self._marks = 0
-        self._mark_s = 0.0
         self._encode = frame_encoder(options.codec, source.size, source.rate)
         own = tuple(each.cube.name for each in playground.players)
         named = replace(options, cubes=(*options.cubes, *own[len(options.cubes) :]))
@@ -92,10 +88,6 @@ class SessionRecording(Closeable):
     def write(self, step: Step, inputs: Inputs) -> None:
         """Record a step, whose frame `encode` returned, and what came in with it."""
         now = self._last = step.frame.timestamp
-        if inputs.clear:
-            self.event(START_OVER_EVENT, now)
-        if inputs.inside:
-            self.event(INSIDE_EVENT, now)
         if self._first is None:
             self._first = now
             self._recorder.camera(self._playground.intrinsics, now)
@@ -104,12 +96,6 @@ class SessionRecording(Closeable):
             if self._from_within:
                 self._record_wires(self._recorder, now)
         self._recorder.write(step, inputs)
-        if step.tracker_error:
-            self.event(f"tracker failed: {step.tracker_error}", now)
-        if step.controls.placed:
-            self.event(f"placed {step.controls.top_face}", now)
-        for gesture in step.controls.gestures:
-            self.event(gesture, now)
 
     @property
     def problem(self) -> str | None:
@@ -124,17 +110,6 @@ class SessionRecording(Closeable):
     def event(self, name: str, timestamp: float) -> None:
         """Record an event by its name, at a time of the session [s]."""
         self._recorder.event(name, timestamp)
-
-    def mark(self, timestamp: float) -> int:
-        """Record the player's next mark, and return its number, from 1."""
-        self._marks, self._mark_s = self._marks + 1, timestamp
-        self.event(f"mark {self._marks}", timestamp)
-        return self._marks
-
-    def name_mark(self, name: str) -> int:
-        """Record what the last mark is, and return its number; see `Mark.of`."""
-        self.event(f"mark {self._marks}: {name}", self._mark_s)
-        return self._marks
 
     def flush(self) -> None:
         """Wait until everything is written."""

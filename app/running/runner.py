@@ -190,6 +190,7 @@ class _Runner:
             waited = time.monotonic() - self._shown_at
             return not self._transport.is_behind or waited >= Pace.MAX_LEFT_OUT_S
         in_time = pace.wait(frame.timestamp)
+        self._session.taken_from_timestamp = pace.due_from_timestamp
         self._times.lap(WAITING)
         return in_time
 

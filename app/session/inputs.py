@@ -1,8 +1,9 @@
 """What came in with the frames of a session, next to their pictures: a replay takes it again."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.characters import SpeechIntent
 
@@ -43,10 +44,14 @@ class RecordedInputs:
     hush: bool = False
     """Whether the player interrupted the character."""
 
+    acts: tuple[Act, ...] = ()
+    """What the characters were told to do by somebody beside the player."""
+
     @property
     def asked(self) -> Inputs:
-        """What the player asked for and said, without what was spoken."""
-        return Inputs(clear=self.clear, inside=self.inside, typed=self.typed, hush=self.hush)
+        """What was asked for and said, without what was spoken."""
+        names = ("clear", "inside", "typed", "hush", "acts")
+        return Inputs(**{name: getattr(self, name) for name in names})
 
     @property
     def speeches(self) -> dict[str, SpeechIntent]:
@@ -57,7 +62,7 @@ class RecordedInputs:
     @classmethod
     def of(cls, inputs: Inputs, timestamp: float) -> "RecordedInputs | None":
         """Return what a recording keeps of the inputs of a frame; None for nothing."""
-        if not (inputs.clear or inputs.inside or inputs.typed or inputs.hush or inputs.lines):
+        if replace(inputs, scenario="", marks=()) == Inputs():
             return None
         speeches = {
             name: SpeechIntent(line.utterance, timestamp, line.profile)
@@ -65,4 +70,13 @@ class RecordedInputs:
         }
         own = speeches.pop(LEAD, None)
         others = tuple(RecordedLine(*each) for each in speeches.items())
-        return cls(inputs.clear, inputs.inside, own, timestamp, others, inputs.typed, inputs.hush)
+        return cls(
+            inputs.clear,
+            inputs.inside,
+            own,
+            timestamp,
+            others,
+            inputs.typed,
+            inputs.hush,
+            inputs.acts,
+        )

@@ -17,6 +17,7 @@ def open_speaker(
     *,
     waits: bool,
     replies: bool = False,
+    prompted: bool = False,
 ) -> Speaker:
     """Return what speaks in a session; the caller closes it.
 
@@ -36,6 +37,8 @@ def open_speaker(
         Whether the session is not in real time.
     replies
         Whether a scenario answers: replies are said in any case, if need be without a sound.
+    prompted
+        Whether somebody beside the player may ask for something to be said, which is a reply too.
 
     Raises
     ------
@@ -43,9 +46,10 @@ def open_speaker(
         There are no such lines, or the user has chosen a language and no voice is installed.
     """
     asked = options.language is not None or options.lines is not None
-    if recorded is not None and not asked:
+    if recorded is not None and not asked and (recorded or not prompted):
         return RecordedSpeaker(recorded)
-    if not replies and (options.language == SILENT or not (asked or options.windowed)):
+    chatty = options.language != SILENT and (asked or (options.windowed and recorded is None))
+    if not (replies or prompted or chatty):
         return RecordedSpeaker({})
     from cubeling.app.speaking.lines import (
         bundled_languages,
@@ -58,7 +62,9 @@ def open_speaker(
     from cubeling.characters.speech import VoiceError
 
     first = options.language or DEFAULT_LANGUAGE
-    if options.lines is None:
+    if not (replies or chatty):  # nothing but what is prompted
+        lines_of, languages = lambda scenario, language: None, ()
+    elif options.lines is None:
         lines_of, languages = lru_cache(bundled_lines), bundled_languages(options.scenario)
         if options.language is None and languages and first not in languages:
             first = languages[0]  # a file of rules has one language
@@ -71,10 +77,10 @@ def open_speaker(
     try:
         voice = None if first == SILENT else open_voice(options.voice)
     except VoiceError as error:
-        if asked and not replies:
+        if asked and not (replies or prompted):
             raise
         problem = str(error)
-    if voice is None and not replies:
+    if voice is None and not (replies or prompted):
         return RecordedSpeaker({}, problem)
     gestures = {id(each.gestures): each.gestures for each in cast if each.gestures is not None}
     choices = tuple(dict.fromkeys((first, *languages, SILENT)))

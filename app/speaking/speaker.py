@@ -20,7 +20,7 @@ from cubeling.app.speaking.line_chooser import (
     LineRequest,
     events_for,
 )
-from cubeling.app.speaking.lines import SILENT, WATCHING, ScenarioLines
+from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT, WATCHING, ScenarioLines
 from cubeling.characters import CharacterError
 from cubeling.characters.behaviour import estimate
 from cubeling.characters.motion import GestureLibrary
@@ -125,7 +125,9 @@ class LiveSpeaker:
             if seen.outcome.hush:
                 self._newest[name] += 1  # what the voice still works at is not wanted any more
             if seen.outcome.reply is not None:
-                wishes[name] = reply_request(seen.outcome.reply, seen.emotion.emotion)
+                reply = seen.outcome.reply
+                reply = replace(reply, language=reply.language or self._spoken)
+                wishes[name] = reply_request(reply, seen.emotion.emotion)
         if len(members) - 1 != len(self._voices):
             self._voices = voices_of_cast([name for name, _ in members[1:]])
         for name in self._chosen(wishes):
@@ -136,6 +138,11 @@ class LiveSpeaker:
             self._newest[name] += 1
             wish = replace(wish, manner=combined(wish.manner, voice))
             self._requests.put((name, self._newest[name], wish))
+
+    @property
+    def _spoken(self) -> str:
+        """The language of a reply that does not say its own."""
+        return DEFAULT_LANGUAGE if self.language == SILENT else self.language
 
     def _chooser(self, name: str, scenario: str, number: int) -> LineChooser | None:
         """Return what chooses the lines of one of the cast; None for silence."""

@@ -6,7 +6,7 @@ every frame; one whose times change is re-timed without a jump; one that is left
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 import numpy as np
@@ -202,3 +202,11 @@ class BehaviourIntent:
 
     clips: tuple[ClipIntent, ...] = ()
     """Clips; later ones lie over earlier ones."""
+
+    def joined(self, first: "BehaviourIntent | None") -> "BehaviourIntent":
+        """Return all that another intent and, over it, this one ask for."""
+        if first is None:
+            return self
+        return BehaviourIntent(
+            *(getattr(first, each.name) + getattr(self, each.name) for each in fields(self))
+        )

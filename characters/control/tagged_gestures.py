@@ -1,7 +1,7 @@
 """Gestures of a tagged text: the behaviours of BML, at the times of its words."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import fields, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 from cubeling.characters.behaviour.bml.document import Behaviour, Block, SyncReference
@@ -34,6 +34,37 @@ STROKE_SYNCS = {"start", "ready", "strokeStart", "strokeEnd", "relax", "end"}
 """The times of a gesture whose apex is known."""
 
 
+class GestureCalls:
+    """Gestures that a character is asked for by their names, one at a time.
+
+    It changes from frame to frame, and a checkpoint copies it.
+    """
+
+    def __init__(self, character: Character) -> None:
+        self._character = character
+        self._scheduled: tuple[Scheduled, ...] = ()
+
+    @cached_property
+    def _realizer(self) -> CharacterRealizer:
+        # In most sessions nobody calls for a gesture: they are read with the first one.
+        return CharacterRealizer(_context(self._character))
+
+    def begin(self, name: str, now: float) -> None:
+        """Make a gesture from a time on [s], in its own time and in the place of the one before.
+
+        One that the character does not know is none; `meanings_of` tells.
+        """
+        start = {"start": SyncReference()}
+        called = Behaviour(name, "gesture", syncs=start, attributes={"lexeme": name})
+        block = Block(f"called@{now:g}", (called,))
+        self._scheduled = _schedule(block, self._realizer, now)
+
+    def intent(self, now: float) -> BehaviourIntent | None:
+        """Return what is asked of the body at a time [s]; None for nothing."""
+        active = [each for each in self._scheduled if each.start <= now < each.end]
+        return self._realizer.frame_of(active, now).intent if active else None
+
+
 class TaggedGestures:
     """Adds what tagged texts ask for to the commands of a character."""
 
@@ -55,7 +86,7 @@ class TaggedGestures:
         if not active:
             return command
         own, asked = self._realizer.frame_of(active, now).intent, command.behaviour
-        return replace(command, behaviour=own if asked is None else _join(asked, own))
+        return replace(command, behaviour=own.joined(asked))
 
     def _follow(self, speech: SpeechIntent | None, now: float) -> None:
         """Schedule a new speech, and forget one that is cut off."""
@@ -73,19 +104,17 @@ class TaggedGestures:
         if not spans:
             return ()
         block = Block(f"text@{speech.start:g}", tuple(map(_behaviour, range(len(spans)), spans)))
-        scheduler = Scheduler(block, self._realizer, lambda _: None)
-        tracks = scheduler.schedule(speech.start, ()).tracks.values()
-        scheduled = []
-        for track in tracks:
-            syncs = dict(zip(track.timing.syncs, track.times, strict=True))
-            if speech.profile.liveliness:
-                syncs = self._on_accent(track.behaviour, syncs, speech)
-            scheduled.append(Scheduled(block.id, track.behaviour, syncs, {}))
-        return tuple(scheduled)
+        scheduled = _schedule(block, self._realizer, speech.start)
+        if not speech.profile.liveliness:
+            return scheduled
+        return tuple(
+            replace(each, times=self._on_accent(each.behaviour, each.times, speech))
+            for each in scheduled
+        )
 
     def _on_accent(
-        self, behaviour: Behaviour, syncs: dict[str, float], speech: SpeechIntent
-    ) -> dict[str, float]:
+        self, behaviour: Behaviour, syncs: Mapping[str, float], speech: SpeechIntent
+    ) -> Mapping[str, float]:
         """Return the times of a gesture with its last apex by an accent, if one is near."""
         meaning = meaning_of(behaviour, _context(self._character))
         accents = [speech.start + each.time for each in speech.utterance.accents]
@@ -165,7 +194,15 @@ def _behaviour(number: int, span: GestureSpan) -> Behaviour:
     )
 
 
-def _join(one: BehaviourIntent, other: BehaviourIntent) -> BehaviourIntent:
-    return BehaviourIntent(
-        *(getattr(one, each.name) + getattr(other, each.name) for each in fields(one))
+def _schedule(block: Block, realizer: CharacterRealizer, start: float) -> tuple[Scheduled, ...]:
+    """Return the behaviours of a block with their times, from `start` on [s]."""
+    scheduler = Scheduler(block, realizer, lambda _: None)
+    return tuple(
+        Scheduled(
+            block.id,
+            track.behaviour,
+            dict(zip(track.timing.syncs, track.times, strict=True)),
+            {},
+        )
+        for track in scheduler.schedule(start, ()).tracks.values()
     )

@@ -2,10 +2,9 @@
 
 import shlex
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import typer
 from rich.console import Console
@@ -17,6 +16,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import Step
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.front_end import FrontEnd
+from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
@@ -25,9 +25,6 @@ from cubeling.app.session import SessionFile, SessionOptions, session_info
 from cubeling.app.ui.notice import focal_length, lens_notice
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.tracking import FrameSource, Intrinsics
-
-if TYPE_CHECKING:
-    from cubeling.app.running.players import CastPublisher
 
 LINE_INTERVAL_S = 5.0
 """Time between two lines of progress outside a terminal [s]."""
@@ -40,7 +37,7 @@ def play_session(
     source: FrameSource | None = None,
     replayed: SessionFile | None = None,
     front_end: FrontEnd | None = None,
-    player: "CastPublisher | None" = None,
+    instruments: Sequence[Instrument] = (),
     ending: EndCard | None = None,
     preferences: PreferenceStore | None = None,
     typed: Iterable[str] | None = None,
@@ -61,7 +58,7 @@ def play_session(
             source=source,
             replayed=replayed,
             front_end=front_end,
-            player=player,
+            instruments=instruments,
             ending=ending,
             preferences=preferences,
             typed=typed,

@@ -4,10 +4,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from cubeling.app.pipeline.cast.directing import refusal
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.cast.turns import Turns
 from cubeling.app.pipeline.scenario import Inputs, Outcome
 from cubeling.app.pipeline.step import Performance, ReplayInputs
+from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.pipeline.table.attention import ALONE, Company
 from cubeling.app.pipeline.table.situation import SeenCube
 from cubeling.app.pipeline.table.spoken_line import LEAD
@@ -43,11 +45,23 @@ class Cast:
         turn = self._turns.update(now, (inputs.line, *others), ends)
         for number in turn.interrupted:
             self.members[number].speaking.stop()
-        silent = replace(inputs, line=None, lines_of_others={})
+        silent = replace(inputs, line=None, lines_of_others={}, acts=())
         told = [silent] * len(self.members)
         if turn.begins is not None:
             told[turn.begins] = replace(silent, line=turn.line)
+        for number, member in enumerate(self.members if inputs.acts else ()):
+            name = member.name if number else LEAD
+            own = tuple(act for act in inputs.acts if act.who == name)
+            told[number] = replace(told[number], acts=own)
         return told
+
+    def refusal(self, act: Act) -> str:
+        """Return why an act cannot be carried out, in one line; "" if it can."""
+        names = (LEAD, *(each.name for each in self.members[1:]))
+        if act.who not in names:
+            return f"nobody in the cast is called '{act.who:.40}'"
+        member = self.members[names.index(act.who)]
+        return refusal(act, member.character, member.actions)
 
     def decide(self, seen: Sequence[SeenCube], told: Sequence[Inputs]) -> list[Outcome]:
         """Let each scenario decide; `seen` are the cubes of the players, `told` is of `hear`."""

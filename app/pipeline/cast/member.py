@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.pipeline.cast.directing import Directing
 from cubeling.app.pipeline.scenario import (
     Inputs,
     Outcome,
@@ -81,6 +82,7 @@ class CastMember:
         controller: ControllerFactory = first_suitable,
     ) -> None:
         self.name, self.scenario, self.attention = name, scenario, attention
+        self._directing = Directing(character)
         self.led = led
         """Whether a cube leads it."""
         self.player = player
@@ -109,10 +111,11 @@ class CastMember:
     def exchange(self, character: Character, animator: Animator) -> None:
         """Go on with another body; see the errors of the class."""
         self._take(character, animator)
+        self._directing.take(character)
         self.body = None
 
     def decide(self, seen: SeenCube, inputs: Inputs, heard: int | None = None) -> Outcome:
-        """Let its scenario decide; `heard` is that of `Situation`."""
+        """Let its scenario decide, and do what it is told; `heard` is that of `Situation`."""
         animator, controls = self._animator, seen.controls
         cube = table_from_cube(seen.state, controls)
         situation = Situation(
@@ -120,7 +123,8 @@ class CastMember:
         )
         scenario = type(self.scenario)
         with scenario_errors(scenario):
-            return check_outcome(self.scenario.update(controls, situation, inputs), scenario)
+            decision = self.scenario.update(controls, situation, replace(inputs, acts=()))
+        return self._directing.update(check_outcome(decision, scenario), inputs)
 
     def command(
         self,

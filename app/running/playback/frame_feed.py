@@ -112,6 +112,7 @@ class FrameFeed(Closeable):
         if self._close_gap and self.last is not None:
             self._shift = frame.timestamp - (self.last.timestamp + 1.0 / source.rate)
         self._close_gap = False
+        self._session.taken_from_timestamp = self._shift
         if self._shift:
             frame = replace(frame, timestamp=self._timeline.stamp(frame.timestamp - self._shift))
         return frame

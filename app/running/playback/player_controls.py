@@ -104,18 +104,17 @@ class PlayerControls:
     def _mark(self, _: MarkMoment) -> None:
         """Mark the frame that is shown, in the recording that is being made."""
         session, now = self._session, self._transport.timestamp
-        if session.recording is None or now is None:
+        if (session.recording is None and not session.instruments) or now is None:
             session.screen.notify("Marks are kept in a recording: R begins one")
             return
-        number = session.recording.mark(now)
-        seconds = session.recording.seconds
-        session.screen.notify(f"Mark {number} at {seconds:.1f} s: {NAMING_KEYS}")
+        number = session.mark(now)
+        at = "" if session.recording is None else f" at {session.recording.seconds:.1f} s"
+        session.screen.notify(f"Mark {number}{at}: {NAMING_KEYS}")
 
     def _name_mark(self, request: NameMark) -> None:
         """Say what the last mark of the recording is."""
-        recording = self._session.recording
-        if recording is not None:
-            number = recording.name_mark(request.name)
+        if self._session.marks:
+            number = self._session.name_mark(request.name)
             self._session.screen.notify(f"Mark {number}: {request.name}")
 
     def _begin_recording(self) -> None:

@@ -120,8 +120,7 @@ class Transport(Closeable):
                 wire.hold(self.timestamp)
         else:
             self._feed.close_gap()
-        if self._session.recording is not None:
-            self._session.recording.event("paused" if paused else "resumed", self.timestamp)
+        self._session.happen("paused" if paused else "resumed", self.timestamp)
 
     def toggle_pause(self) -> None:
         """Pause or go on; at the end, begin again."""

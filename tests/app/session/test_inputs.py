@@ -5,9 +5,11 @@ from pathlib import Path
 import pytest
 
 import tests.sessions
+from cubeling.affect import Emotion
 from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
@@ -25,7 +27,7 @@ from tests.app.conftest import SHORT_FRAMES
 
 SPOKEN = Path(tests.sessions.__path__[0]) / "spoken.mcap"
 
-START_OVER, OPENED, CLOSED, MARK, HIDDEN, SHOWN = 20, 10, 35, 30, 3, 25
+START_OVER, OPENED, CLOSED, MARK, HIDDEN, SHOWN, ACTED, FELT = 20, 10, 35, 30, 3, 25, 22, 28
 """The frames in which something comes in; one line is said before the character appears."""
 
 
@@ -36,7 +38,15 @@ class Presses(NullScreen):
 
     def show(self, step, robot):
         self.shown += 1
-        return Inputs(clear=self.shown == START_OVER, inside=self.shown in (OPENED, CLOSED))
+        acts = {
+            ACTED: (Act("gesture", "nod"), Act("action", "kiss", 0.5)),
+            FELT: (Act("emotion", emotion=Emotion(-0.6, 0.7, "angry")), Act("say", "Hm.")),
+        }
+        return Inputs(
+            clear=self.shown == START_OVER,
+            inside=self.shown in (OPENED, CLOSED),
+            acts=acts.get(self.shown, ()),
+        )
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +63,7 @@ def full(tmp_path_factory, short_session):
 
         def mark(step):
             if step.frame.index == MARK and session.recording is not None:
-                session.recording.mark(step.frame.timestamp)
+                session.mark(step.frame.timestamp)
 
         run(session, mark)
     return path
@@ -65,6 +75,14 @@ def test_a_session_with_inputs_of_every_kind_replays_bit_for_bit(full):
     assert session_parts.start_overs(full) == {times[START_OVER]}
     assert session_parts.openings(full) == {times[OPENED], times[CLOSED]}
     assert list(session_parts.lines(full)) == [times[HIDDEN], times[SHOWN]]
+    acted = {time: each.acts for time, each in session_parts.inputs(full).items() if each.acts}
+    assert list(acted) == [times[ACTED], times[FELT]]
+    assert [act.kind for acts in acted.values() for act in acts] == [
+        "gesture",
+        "action",
+        "emotion",
+        "say",
+    ]
     result = session_parts.check(full, session_info(full).options)
     assert result.identical
     assert set(result.counts.values()) == {SHORT_FRAMES}
