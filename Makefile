@@ -93,7 +93,7 @@ check-types: links
 # In an environment of its own: it needs every extra, and tests must not depend on what they add.
 licences:  ## write the table of docs/licences.md again
 	$(PYTHON) -m venv build/licences
-	build/licences/$(notdir $(BIN))/python -m pip install --quiet --constraint constraints.txt --editable ".[align,fbx,plots,sound,study,voice,web]"
+	build/licences/$(notdir $(BIN))/python -m pip install --quiet --constraint constraints.txt --editable ".[align,fbx,lab,osc,plots,sound,study,voice,web]"
 	build/licences/$(notdir $(BIN))/python -m tools.licences
 
 audit: .venv/ready-audit  ## ask which versions in constraints.txt have known vulnerabilities

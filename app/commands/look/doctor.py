@@ -80,6 +80,8 @@ def examine(*, cameras: bool = True) -> list[Finding]:
         _voice(),
         _ports(),
         _broker(),
+        _osc(),
+        _lsl(),
     ]
     return [*findings, _camera()] if cameras else findings
 
@@ -222,6 +224,30 @@ def _broker() -> Finding:
         remedy = "apt install mosquitto"
         return Finding("broker", "missing", "none: only for players in several places", remedy)
     return Finding("broker", "good", path)
+
+
+def _osc() -> Finding:
+    """Look for the library of OSC; only instruments of others need it."""
+    from cubeling.app.bridges.opening import OSC_REMEDY, check_osc
+
+    try:
+        check_osc()
+    except AppError:
+        return Finding("OSC", "missing", "none: only for --osc, --osc-in and --vmc", OSC_REMEDY)
+    return Finding("OSC", "good", f"python-osc {importlib.metadata.version('python-osc')}")
+
+
+def _lsl() -> Finding:
+    """Look for Lab Streaming Layer, whose own library pylsl's wheel may lack."""
+    from cubeling.app.bridges.opening import lsl_problem
+
+    problem = lsl_problem()
+    if problem is not None:
+        return Finding("LSL", "missing", f"{problem[0]}: only for --lsl and --lsl-in", problem[1])
+    import pylsl
+
+    version = pylsl.library_version()
+    return Finding("LSL", "good", f"liblsl {version // 100}.{version % 100}")
 
 
 def _camera() -> Finding:

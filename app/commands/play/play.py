@@ -4,15 +4,6 @@ from typing import Annotated
 
 import typer
 
-from cubeling.app.commands.access import (
-    Broker,
-    Ca,
-    PasswordFile,
-    PlayerName,
-    Site,
-    check_publisher,
-    publisher,
-)
 from cubeling.app.commands.character_options import (
     CHARACTER_GROUP,
     OwnMotionsOption,
@@ -22,6 +13,7 @@ from cubeling.app.commands.character_options import (
     profile_of,
 )
 from cubeling.app.commands.output import OverwriteOption
+from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.commands.play.play_options import (
     ALL_REALISM,
     DEFAULT_CAMERA,
@@ -70,10 +62,10 @@ from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
 from cubeling.characters import check_controller
-from cubeling.robot.network import DEFAULT_SITE
 
 
 @with_preferences
+@with_instruments
 def play(
     scenario: ScenarioArgument,
     source: SourceOption = DEFAULT_CAMERA,
@@ -132,13 +124,9 @@ def play(
     condition: ConditionOption = "",
     notes: NotesOption = "",
     video: VideoOption = True,
-    mqtt: Broker = None,
-    player: PlayerName = None,
-    site: Site = DEFAULT_SITE,
-    password_file: PasswordFile = None,
-    ca: Ca = None,
     *,
     preferences: GivenPreferences,
+    instruments: GivenInstruments,
 ) -> None:
     """Play with the cube in front of a camera.
 
@@ -193,7 +181,6 @@ def play(
         notes=notes,
     )
     check_output_paths(options)
-    check_publisher(mqtt, player)
     options, kept = preferences.open(options)
     check_inputs(options)
     # Nothing above needs numpy or OpenCV: what is misspelt is refused before they are loaded.
@@ -203,5 +190,5 @@ def play(
     check_cubes(scenario, options.cubes)  # before a display is missing
     if options.windowed and not has_display():
         raise AppError("there is no display here: write a video with --output FILE.mp4")
-    with publisher(mqtt, player, site, password_file, ca) as line:
-        play_session(options, f"playing {scenario}", player=line, preferences=kept)
+    with instruments.open() as opened:
+        play_session(options, f"playing {scenario}", instruments=opened, preferences=kept)

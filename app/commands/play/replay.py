@@ -8,18 +8,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cubeling.app.commands.access import (
-    Broker,
-    Ca,
-    PasswordFile,
-    PlayerName,
-    Site,
-    check_publisher,
-    publisher,
-)
 from cubeling.app.commands.character_options import CHARACTER_GROUP, OwnMotionsOption
 from cubeling.app.commands.output import OverwriteOption
 from cubeling.app.commands.play.complete import complete_session
+from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.commands.play.part import EndOption, LoopOption, StartOption
 from cubeling.app.commands.play.play_options import (
     ALL_REALISM,
@@ -49,12 +41,12 @@ from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
 from cubeling.characters import check_controller
-from cubeling.robot.network import DEFAULT_SITE
 
 CHECK_GROUP = "What is computed, and how fast"
 
 
 @with_preferences
+@with_instruments
 def replay(
     session: Annotated[Path, typer.Argument(help="A session recorded with --record.")],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
@@ -118,13 +110,9 @@ def replay(
             rich_help_panel=CHECK_GROUP,
         ),
     ] = False,
-    mqtt: Broker = None,
-    player: PlayerName = None,
-    site: Site = DEFAULT_SITE,
-    password_file: PasswordFile = None,
-    ca: Ca = None,
     *,
     preferences: GivenPreferences,
+    instruments: GivenInstruments,
 ) -> None:
     """Play a recorded session: in a window, to a video, or only to its summary.
 
@@ -149,7 +137,6 @@ def replay(
         record_codec, video_codec = codecs_of(codec, record, output)
         character, others = cast_of(cast, character)
         chosen_realism, chosen_quality = realism_of(realism), checked_quality(quality)
-        check_publisher(mqtt, player)
         # Of how many players the session is, is known once it is read.
         (robot, second_robot), robot_names = robots_of(robots or (), MAX_PLAYERS)
         asked = SessionOptions(
@@ -231,7 +218,10 @@ def replay(
             Console().print(result)
             raise typer.Exit(0 if result.identical else 1)
         options, kept = preferences.open(replace(options, source=str(file.path)))
-        line = closing.enter_context(publisher(mqtt, player, site, password_file, ca))
         play_session(
-            options, f"replaying {session.name}", replayed=file, player=line, preferences=kept
+            options,
+            f"replaying {session.name}",
+            replayed=file,
+            instruments=closing.enter_context(instruments.open()),
+            preferences=kept,
         )

@@ -9,6 +9,7 @@ import typer
 from cubeling.app.commands.character_options import VoiceOption
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
 from cubeling.app.commands.play.first_camera import DESK, open_camera_or_desk
+from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
     FolderOption,
@@ -27,6 +28,7 @@ BUNDLED_PLAYS = ("antigone",)
 
 
 @with_preferences
+@with_instruments
 def show(
     play: Annotated[
         str, typer.Argument(help="A .show file, see docs/talking.md; or antigone.")
@@ -41,6 +43,7 @@ def show(
     folder: FolderOption = None,
     *,
     preferences: GivenPreferences,
+    instruments: GivenInstruments,
 ) -> None:
     """Show a play: several characters speak and act by one file.
 
@@ -80,7 +83,12 @@ def show(
         if options.windowed and source == DEFAULT_CAMERA:
             options, camera = open_camera_or_desk(options, closing)
         play_session(
-            options, f"showing {play}", source=camera, preferences=kept, until_over=written
+            options,
+            f"showing {play}",
+            source=camera,
+            instruments=closing.enter_context(instruments.open()),
+            preferences=kept,
+            until_over=written,
         )
 
 

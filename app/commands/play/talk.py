@@ -13,6 +13,7 @@ import typer
 from cubeling.app.commands.character_options import VoiceOption
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
 from cubeling.app.commands.play.first_camera import DESK, open_camera_or_desk
+from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
     FILES_GROUP,
@@ -41,6 +42,7 @@ TYPED_FILE = FileKind(
 
 
 @with_preferences
+@with_instruments
 def talk(
     script: Annotated[
         str, typer.Argument(help="A dialogue: an .xml file, see docs/talking.md.")
@@ -88,6 +90,7 @@ def talk(
     ] = False,
     *,
     preferences: GivenPreferences,
+    instruments: GivenInstruments,
 ) -> None:
     """Talk with a character: type, and it answers with voice, face and gestures.
 
@@ -135,7 +138,14 @@ def talk(
         if options.windowed and source is None and typed is None:
             options, camera = open_camera_or_desk(options, closing)
         lines = _lines(typed) if written or typed else None
-        play_session(options, f"talking: {script}", source=camera, preferences=kept, typed=lines)
+        play_session(
+            options,
+            f"talking: {script}",
+            source=camera,
+            instruments=closing.enter_context(instruments.open()),
+            preferences=kept,
+            typed=lines,
+        )
 
 
 def read_typed(path: Path) -> list[str]:
