@@ -1,3 +1,4 @@
+from cubeling.characters.face.preset_face import PRESETS as PRESETS, PresetFace as PresetFace
 from cubeling.characters.formats.loading import (
     RecordedMotion as RecordedMotion,
     is_motion_only as is_motion_only,
@@ -30,3 +31,4 @@ from cubeling.characters.retargeting.recording import (
 )
 from cubeling.characters.retargeting.retarget import retarget as retarget
 from cubeling.characters.retargeting.root import with_root_joint as with_root_joint
+from cubeling.characters.retargeting.tpose_bones import TPoseBones as TPoseBones

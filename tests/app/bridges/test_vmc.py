@@ -1,0 +1,212 @@
+"""The character on other programs' models: sent by VMC, received by the published conventions."""
+
+import socket
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from cubeling.app.bridges.addresses import UdpAddress
+from cubeling.app.bridges.vmc import VRM0_NAMES, VmcBody, VmcOut, unity_name
+from cubeling.characters import Character, CharacterError, PosedCharacter
+from cubeling.characters.model import PRESETS, TPoseBones, retarget
+from cubeling.characters.skeleton import rotations
+from cubeling.characters.skeleton.anatomy import Anatomy
+from cubeling.characters.skeleton.pose import Pose, Skeleton
+from tests.app.bridges.vmc_receiver import VmcReceiver
+
+UNITY_BONES = frozenset(
+    [
+        *("Hips", "Spine", "Chest", "UpperChest", "Neck", "Head", "Jaw"),
+        *(
+            f"{side}{bone}"
+            for side in ("Left", "Right")
+            for bone in (
+                *("UpperLeg", "LowerLeg", "Foot", "Toes", "Shoulder", "UpperArm", "LowerArm"),
+                *("Hand", "Eye"),
+                *(
+                    f"{finger}{joint}"
+                    for finger in ("Thumb", "Index", "Middle", "Ring", "Little")
+                    for joint in ("Proximal", "Intermediate", "Distal")
+                ),
+            )
+        ),
+    ]
+)
+"""Unity's HumanBodyBones."""
+
+
+@pytest.fixture(scope="module")
+def human():
+    return Character.load("human")
+
+
+def posed(character, pose, place=None):
+    table = np.eye(4) if place is None else place
+    return PosedCharacter(pose, table, True, "wave", 0.0, 0.0, 0.0, 0.0)
+
+
+def normalised_model(human, arms=1.0, legs=1.0):
+    """Return a model as VRM 0 has it: in a T-pose, no bone turned, of other proportions."""
+    bones = TPoseBones(human)
+    offsets = bones.offsets.copy()
+    for bone, part in enumerate(bones.parts):
+        if part.endswith(("LowerArm", "Hand")):
+            offsets[bone] *= arms
+        if part.endswith(("LowerLeg", "Foot")) or part == "hips":
+            offsets[bone] *= legs
+    rest = Pose(offsets, np.tile(rotations.IDENTITY, (len(offsets), 1)))
+    return Skeleton(bones.parts, bones.parents, rest)
+
+
+def raw_model(human, arms, legs):
+    """Return the same as VRM 1.0 may have it: each bone has axes of its own."""
+    plain = normalised_model(human, arms, legs)
+    random = np.random.default_rng(1)
+    world = random.normal(size=(len(plain), 4))
+    world /= np.linalg.norm(world, axis=-1, keepdims=True)
+    places = plain.rest.globals(plain)[:, :3, 3]
+    turns, offsets = world.copy(), places.copy()
+    for joint, parent in enumerate(plain.parents):
+        if parent >= 0:
+            above = rotations.conjugate(world[parent])
+            turns[joint] = rotations.multiply(above, world[joint])
+            offsets[joint] = rotations.rotate(above, places[joint] - places[parent])
+    return Skeleton(plain.names, plain.parents, Pose(offsets, turns))
+
+
+MODELS = {
+    "the same body": lambda human: normalised_model(human),
+    "long arms, short legs": lambda human: normalised_model(human, 1.4, 0.7),
+    "bones with axes of their own": lambda human: raw_model(human, 0.8, 1.2),
+}
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_wave_puts_the_wrists_where_our_own_retargeting_does(human, model):
+    """Seen from the hips, which each program places by its own rule."""
+    clip, skeleton = human.clips["wave"], MODELS[model](human)
+    anatomy = Anatomy("humanoid", {name: joint for joint, name in enumerate(skeleton.names)})
+    ours = retarget(clip, human.skeleton, human.anatomy, skeleton, anatomy)
+    with socket.socket(type=socket.SOCK_DGRAM) as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.setblocking(False)
+        with VmcOut(UdpAddress("127.0.0.1", listener.getsockname()[1])) as out:
+            out.begin([human])
+            apart = []
+            for frame in range(0, len(clip), 3):
+                out.follow(SimpleNamespace(posed=posed(human, clip.poses[frame])), [human], 0.0)
+                receiver = VmcReceiver()
+                while True:
+                    try:
+                        receiver.take(listener.recv(65536))
+                    except BlockingIOError:
+                        break
+                theirs = receiver.pose(skeleton).globals(skeleton)[:, :3, 3]
+                own = ours.poses[frame].globals(skeleton)[:, :3, 3]
+                hands = [anatomy.joints["leftHand"], anatomy.joints["rightHand"]]
+                hips = anatomy.joints["hips"]
+                apart.append((theirs[hands] - theirs[hips]) - (own[hands] - own[hips]))
+    assert np.linalg.norm(apart, axis=-1).max() < 0.02
+    path = ours.poses.globals(skeleton)[:, anatomy.joints["rightHand"], :3, 3]
+    assert np.ptp(path, axis=0).max() > 0.3, "a wave is no small thing"
+
+
+@pytest.mark.parametrize("clip", ["wave", "cheer", "Walk"])
+def test_in_unitys_axes_the_bones_end_where_ours_do_with_left_and_right_in_their_places(
+    human, clip
+):
+    """Positions and rotations together, from the hips down each chain; +x is to the right there."""
+    pose = human.clips[clip].poses[len(human.clips[clip]) // 2]
+    receiver = VmcReceiver()
+    for each in VmcBody(human).messages(posed(human, pose), 0.0):
+        if each.address == "/VMC/Ext/Bone/Pos":
+            receiver.bones[each.arguments[0]] = np.array(each.arguments[1:])
+    bones = TPoseBones(human)
+    places, turns = {}, {}
+    for part, parent in zip(bones.parts, bones.parents, strict=True):
+        numbers = receiver.bones[unity_name(part)]
+        above = bones.parts[parent] if parent >= 0 else None
+        places[part], turns[part] = numbers[:3], numbers[3:]
+        if above is not None:
+            places[part] = places[above] + rotations.rotate(turns[above], numbers[:3])
+            turns[part] = rotations.multiply(turns[above], numbers[3:])
+    own = pose.globals(human.skeleton)
+    for part in ("leftHand", "rightHand", "leftFoot", "rightFoot", "head"):
+        place = own[human.anatomy.joints[part], :3, 3] * [-1.0, 1.0, 1.0]
+        # Our clips move some joints in their parents, by millimetres.
+        np.testing.assert_allclose(places[part], place, atol=0.006, err_msg=part)
+
+
+def test_every_bone_has_a_name_that_unity_knows_and_its_rest_offset(human):
+    """Receivers that take positions would else put all bones into one point."""
+    sent = VmcBody(human).messages(posed(human, human.skeleton.rest), 0.0)
+    bones = {m.arguments[0]: m.arguments[1:] for m in sent if m.address == "/VMC/Ext/Bone/Pos"}
+    assert UNITY_BONES >= bones.keys() >= {"Hips", "Spine", "Head", "LeftHand", "RightFoot"}
+    assert all(np.linalg.norm(numbers[:3]) > 0.005 for numbers in bones.values())
+    assert bones["Hips"][1] == pytest.approx(0.84, abs=0.02)
+    assert all(np.linalg.norm(numbers[3:]) == pytest.approx(1.0) for numbers in bones.values())
+
+
+def test_expressions_have_the_names_of_vrm_0_and_are_applied(human):
+    weights = np.zeros(len(human.morphs))
+    weights[human.morphs.index("happy")] = 0.75
+    weights[human.morphs.index("viseme_O")] = 0.5
+    weights[human.morphs.index("blinkLeft")] = 1.0
+    pose = replace(human.skeleton.rest, morphs=weights)
+    receiver = VmcReceiver()
+    sent = list(VmcBody(human).messages(posed(human, pose), 0.0))
+    for each in sent:
+        if each.address == "/VMC/Ext/Blend/Val":
+            receiver.blend[each.arguments[0]] = each.arguments[1]
+    assert sent[-1].address == "/VMC/Ext/Blend/Apply"
+    assert receiver.blend.keys() == {VRM0_NAMES[preset] for preset in PRESETS}
+    shown = {name: value for name, value in receiver.blend.items() if value > 0.01}
+    assert shown == pytest.approx({"Joy": 0.75, "O": 0.5, "Blink_L": 1.0}, abs=0.01)
+
+
+def test_the_root_is_where_the_character_stands_in_its_own_metres(human):
+    """A person of the height of a hand walks on the table by as many of its own lengths."""
+    yaw, scale = 0.5, 0.1
+    table = np.eye(4)
+    table[:3, :3] = scale * rotations.to_matrix(rotations.about("y", yaw))
+    table[:3, 3] = 0.2, 0.0, 0.1
+    sent = VmcBody(human).messages(posed(human, human.skeleton.rest, table), 0.0)
+    (root,) = [m.arguments for m in sent if m.address == "/VMC/Ext/Root/Pos"]
+    assert root[0] == "root"
+    assert root[1:4] == pytest.approx((-2.0, 0.0, 1.0))
+    turned = np.array(root[4:]) * [1.0, -1.0, -1.0, 1.0]
+    np.testing.assert_allclose(turned, rotations.about("y", yaw), atol=1e-12)
+
+
+def test_what_is_no_person_is_refused_in_one_line():
+    with (
+        VmcOut(UdpAddress("127.0.0.1", 9)) as out,
+        pytest.raises(CharacterError, match="vleo is no person"),
+    ):
+        out.begin([Character.load("vleo")])
+
+
+def test_another_character_in_play_is_followed_if_it_can_be(human):
+    vleo = Character.load("vleo")
+    with VmcOut(UdpAddress("127.0.0.1", 9)) as out:
+        out.begin([human])
+        for who in (vleo, human):
+            out.follow(SimpleNamespace(posed=posed(who, who.skeleton.rest)), [who], 0.0)
+
+
+@pytest.mark.parametrize(
+    "morphs",
+    [
+        ("happy", "angry", "sad", "surprised", "relaxed", "aa", "ih", "ou", "ee", "oh", "blink"),
+        ("Fcl_ALL_Joy", "Fcl_MTH_A", "Fcl_MTH_I", "Fcl_MTH_U", "Fcl_MTH_E", "Fcl_MTH_O"),
+    ],
+)
+def test_each_preset_of_a_face_that_has_it_is_read_alone(morphs):
+    from cubeling.characters.model import PresetFace
+
+    face = PresetFace(morphs)
+    for number in range(len(morphs)):
+        shown = face.read(np.eye(len(morphs))[number])
+        assert sorted(shown.values())[-2:] == pytest.approx([0.0, 1.0], abs=0.02), morphs[number]
