@@ -12,6 +12,7 @@ from cubeling.app.workshop.pages.report_table import (
     percent,
 )
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
+from cubeling.app.workshop.study.protocols.protocol import pair_members
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item
 from cubeling.app.workshop.study.reporting.cmos import (
     ANSWER_SCORES,
@@ -49,8 +50,7 @@ COLUMNS = ("first / second", "n", "better", "worse", "mean", "median", "three le
 
 def simulated_answer(rng: np.random.Generator, step: PlannedStep, item: Item) -> Answer:
     """Return a vote drawn from the counts, turned round where the first is on the left."""
-    first, _, second = step.stimulus["pair"].partition(" / ")
-    votes = COUNTS[first, second]
+    votes = COUNTS[pair_members(step.stimulus["pair"])]
     shares = np.array([votes.much_better, votes.better, votes.same, votes.worse, votes.much_worse])
     score = float(rng.choice(ANSWER_SCORES, p=shares / votes.total))
     return -score if step.first_left else score
@@ -61,19 +61,21 @@ def votes_of(rows: Sequence[Row]) -> dict[tuple[str, str], list[tuple[str, int]]
     found: dict[tuple[str, str], list[tuple[str, int]]] = {}
     for row in rows:
         if row["item"] == "suits" and row["answer"] is not None:
-            first, _, second = row["stimulus"]["pair"].partition(" / ")
             score = int(-row["answer"] if row["first_left"] else row["answer"])
-            found.setdefault((first, second), []).append((row["participant"], score))
+            pair = pair_members(row["stimulus"]["pair"])
+            found.setdefault(pair, []).append((row["participant"], score))
     return {pair: found[pair] for pair in COUNTS if pair in found}
 
 
 def printed_tables() -> tuple[ReportTable, ...]:
     """Return the printed table beside the figures of its counts."""
+    from cubeling.app.workshop.study.reporting.statistics import compare_paired
+
     rows: list[tuple[str, ...]] = []
     for pair, votes in COUNTS.items():
         better, worse, mean, median, p = PRINTED[pair]
         rows.append((" / ".join(pair), "printed", better, worse, mean, median, "", p))
-        counted = p_value(votes.wilcoxon_p())
+        counted = p_value(compare_paired(votes.scores, np.zeros(votes.total)).p)
         rows.append(("", "from counts", *_cells(votes, sign=True), counted))
     others = ", ".join(f"{name} {figure(s)}" for name, s in PUBLISHED_THREE_LEVEL.items())
     below = ", ".join(

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
-from cubeling.app.workshop.study.protocols.protocol import StimulusSet
+from cubeling.app.workshop.study.protocols.protocol import StimulusSet, pair_members
 
 MEDIA_TYPES = {
     ".png": "image/png",
@@ -19,10 +19,9 @@ def names_of(stimuli: StimulusSet, step: PlannedStep) -> list[str]:
     """Return the names of what is shown: from left to right for a pair; none without files."""
     if not stimuli.file:
         return []
-    members = [""]
+    members: tuple[str, ...] = ("",)
     if stimuli.pair:
-        first, _, second = step.stimulus[stimuli.pair].partition(" / ")
-        members = [first, second] if step.first_left else [second, first]
+        members = pair_members(step.stimulus[stimuli.pair], step.first_left)
     return [stimuli.file.format_map({**step.stimulus, "member": each}) for each in members]
 
 

@@ -22,6 +22,7 @@ from cubeling.app.workshop.study.protocols.protocol import (
     Settings,
     StimulusSet,
     StudyTask,
+    pair_members,
 )
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
 
@@ -54,7 +55,7 @@ class TerminalDesk:
             self._console.rule(Text(questionnaire.title or questionnaire.name))
             if step.stimulus:
                 self._console.print(Text(shown(self._protocol.stimuli[step.part], step)))
-        self._console.print(Text(item.text, "bold"))
+        self._console.print(Text(item.words, "bold"))
         for line in choices(item):
             self._console.print(Text(line))
         while True:
@@ -89,8 +90,7 @@ def shown(stimuli: StimulusSet, step: PlannedStep) -> str:
     words = where or f"{step.place}. " + ", ".join(others.values())
     if not stimuli.pair:
         return words
-    first, _, second = step.stimulus[stimuli.pair].partition(" / ")
-    left, right = (first, second) if step.first_left else (second, first)
+    left, right = pair_members(step.stimulus[stimuli.pair], step.first_left)
     # Who answers is not to know which is which; who shows them is.
     return words if where else f"{words} [experimenter: left {left}, right {right}]"
 

@@ -55,6 +55,16 @@ class Settings:
     """Full turns of the cube from the least to the greatest intensity."""
 
 
+def pair_members(pair: str, first_left: bool = True) -> tuple[str, str]:
+    """Return the members of a pair "a / b" from left to right.
+
+    >>> pair_members("a / b", first_left=False)
+    ('b', 'a')
+    """
+    first, _, second = pair.partition(" / ")
+    return (first, second) if first_left else (second, first)
+
+
 @dataclass(frozen=True)
 class StimulusSet:
     """Pictures, videos or pairs of them that are shown one after the other."""

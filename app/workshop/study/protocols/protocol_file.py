@@ -1,14 +1,16 @@
 """Reading the protocol of a study from a TOML file, and refusing what could not be run."""
 
 import itertools
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
 from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.scenarios import check_scenario, find_scenario
-from cubeling.app.workshop.study.protocols.goals import Goal
+from cubeling.app.workshop.study.protocols.forms import questionnaire_of
 from cubeling.app.workshop.study.protocols.orders import MAX_CONDITIONS
 from cubeling.app.workshop.study.protocols.protocol import (
     Instruction,
@@ -20,13 +22,7 @@ from cubeling.app.workshop.study.protocols.protocol import (
     StimulusSet,
     StudyTask,
 )
-from cubeling.app.workshop.study.protocols.questionnaires import (
-    Item,
-    Questionnaire,
-    Score,
-    bundled_questionnaire,
-    read_questionnaire,
-)
+from cubeling.app.workshop.study.protocols.questionnaires import Questionnaire
 from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, parse, toml_kind
 from cubeling.tracking import CubeModel
 
@@ -56,7 +52,7 @@ KEYS = (
     *("phase", "instruction", "task", "questionnaire", "stimuli", "resume", "preregistered"),
 )
 
-Named = TypeVar("Named", Instruction, StudyTask, Questionnaire, StimulusSet, Phase)
+Named = TypeVar("Named", Instruction, StudyTask, Questionnaire, StimulusSet)
 
 
 def bundled_protocols() -> tuple[str, ...]:
@@ -105,13 +101,11 @@ def _protocol(file: TomlTable, path: Path) -> Protocol:
         file.choice("design", ("within", "between"), "within"),  # type: ignore[arg-type]
         file.choice("order", ORDERS, "latin"),  # type: ignore[arg-type]
         file.whole("seed", 0, 2**32 - 1, 1),
-        _named(row.fill(Phase) for row in file.rows("phase")),
-        _by_name(file, "instruction", (row.fill(Instruction) for row in file.rows("instruction"))),
-        _by_name(file, "task", (_task(row, path) for row in file.rows("task"))),
-        _by_name(
-            file, "questionnaire", (_questionnaire(row, path) for row in file.rows("questionnaire"))
-        ),
-        _by_name(file, "stimuli", (_stimuli(row) for row in file.rows("stimuli"))),
+        tuple(row.fill(Phase) for row in file.rows("phase")),
+        _by_name(file, "instruction", lambda row: row.fill(Instruction)),
+        _by_name(file, "task", lambda row: _task(row, path)),
+        _by_name(file, "questionnaire", lambda row: questionnaire_of(row, path.parent)),
+        _by_name(file, "stimuli", _stimuli),
         file.table("resume").fill(Resume),
         file.table("preregistered").fill(Preregistered),
         tuple(
@@ -125,10 +119,6 @@ def _protocol(file: TomlTable, path: Path) -> Protocol:
     return protocol
 
 
-def _named(rows: Iterator[Phase]) -> tuple[Phase, ...]:
-    return tuple(rows)
-
-
 def _files(file: TomlTable, key: str, entry: str) -> Iterator[str]:
     """Yield the files that some rows name, which are beside the protocol."""
     for row in file.rows(key):
@@ -139,56 +129,28 @@ def _files(file: TomlTable, key: str, entry: str) -> Iterator[str]:
             yield name
 
 
-def _by_name(file: TomlTable, key: str, rows: Iterator[Named]) -> dict[str, Named]:
+def _by_name(file: TomlTable, key: str, read: Callable[[TomlTable], Named]) -> dict[str, Named]:
+    """Return what `read` makes of the rows of a key, by their names."""
     found: dict[str, Named] = {}
-    for row in rows:
-        if row.name in found or not row.name.strip() or "/" in row.name:
-            raise file.wrong(key, f"{row.name!r} is there twice, or is no name")
-        found[row.name] = row
+    for each in map(read, file.rows(key)):
+        name = each.name
+        if name in found or not name.strip() or not name.isprintable() or "/" in name:
+            raise file.wrong(key, f"{name!r} is there twice, or is no name")
+        found[name] = each
     return found
 
 
 def _task(row: TomlTable, path: Path) -> StudyTask:
-    row.only("name", "text", "scenario", "goal", "limit_s", "ends", "then")
-    goal = row.table("goal").fill(Goal)
-    scenario = row.line("scenario")
-    if scenario.endswith(".toml"):
-        scenario = str(path.parent / scenario)
-    check_scenario(scenario)
-    limit = row.number("limit_s", 1.0, MAX_LIMIT_S, 120.0)
-    if goal.hold_s >= limit:
-        raise row.wrong("goal", f"cannot be reached: it holds {goal.hold_s:g} s of {limit:g} s")
-    return StudyTask(
-        row.line("name"),
-        row.text("text"),
-        scenario,
-        goal,
-        limit,
-        row.choice("ends", ("goal", "person"), "goal"),  # type: ignore[arg-type]
-        row.texts("then"),
-    )
-
-
-def _questionnaire(row: TomlTable, path: Path) -> Questionnaire:
-    row.only("name", "title", "source", "item", "score", "bundled", "file")
-    name = row.line("name")
-    if "bundled" in row or "file" in row:
-        if "item" in row or ("bundled" in row and "file" in row):
-            raise row.wrong("", "has one of 'bundled', 'file' and 'item'")
-        if "bundled" in row:
-            found = bundled_questionnaire(row.line("bundled"))
-        else:
-            found = read_questionnaire(path.parent / row.line("file"))
-        title = row.line("title", found.title)
-        return Questionnaire(name, title, found.source, found.item, found.score)
-    items = tuple(each.fill(Item) for each in row.rows("item"))
-    if not items:
-        raise row.wrong("item", "a questionnaire needs at least one")
-    scores = tuple(each.fill(Score) for each in row.rows("score"))
-    try:
-        return Questionnaire(name, row.line("title", ""), row.line("source", ""), items, scores)
-    except AppError as error:
-        raise row.wrong("", str(error)) from None
+    task = row.fill(StudyTask)
+    limit = row.number("limit_s", 1.0, MAX_LIMIT_S, task.limit_s)
+    if task.goal.hold_s >= limit:
+        raise row.wrong(
+            "goal", f"cannot be reached: it holds {task.goal.hold_s:g} s of {limit:g} s"
+        )
+    if task.scenario.endswith(".toml"):
+        task = replace(task, scenario=str(path.parent / task.scenario))
+    check_scenario(task.scenario)
+    return task
 
 
 def _stimuli(row: TomlTable) -> StimulusSet:
@@ -196,10 +158,7 @@ def _stimuli(row: TomlTable) -> StimulusSet:
     stimuli: list[dict[str, str]] = []
     for cross in row.rows("cross"):
         levels = {name: cross.texts(name) for name in cross.names()}
-        count = 1
-        for each in levels.values():
-            count *= len(each)
-        if len(stimuli) + count > MAX_STIMULI:
+        if len(stimuli) + math.prod(map(len, levels.values())) > MAX_STIMULI:
             raise row.wrong("cross", f"makes more than {MAX_STIMULI} stimuli")
         crossed = itertools.product(*levels.values())
         stimuli += [dict(zip(levels, chosen, strict=True)) for chosen in crossed]
@@ -216,8 +175,7 @@ def _stimuli(row: TomlTable) -> StimulusSet:
         row.line("pair", ""),
         row.line("file", ""),
     )
-    needed = [*found.of, *([found.pair] if found.pair else [])]
-    for name in needed:
+    for name in filter(None, (*found.of, found.pair)):
         if any(name not in stimulus for stimulus in stimuli):
             raise row.wrong("", f"not every stimulus has the factor {name!r}")
     for key in ("ask", "file"):

@@ -3,20 +3,9 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 from cubeling.app.errors import AppError
-from cubeling.toml_file import TomlTable, bundled, read, toml_kind
-
-QUESTIONNAIRE_FILE = toml_kind(
-    "questionnaire",
-    AppError,
-    "cubeling.app.workshop.study.protocols.questionnaires:read_questionnaire",
-)
-"""A questionnaire that the researcher brings."""
-
-BUNDLED_FOLDER = Path(__file__).parent / "forms"
 
 Answer = float | str | None
 """A number for scales and sliders, text for choices and free text, None for no answer."""
@@ -30,7 +19,7 @@ class Item:
     """Its name in the tables."""
 
     text: str
-    """The question as the participant reads it."""
+    """The question as the participant reads it; "" between two opposites, which are its anchors."""
 
     kind: Literal["scale", "slider", "choice", "text"] = "scale"
     """Whole numbers, any number, one of some texts, or free text."""
@@ -63,6 +52,15 @@ class Item:
             raise AppError(f"the item '{self.name}' needs 2 anchors, or one for each point")
         if self.simulated and (len(self.simulated) != points or min(self.simulated) < 0):
             raise AppError(f"the item '{self.name}' has {points} answers: give a share of each")
+
+    @property
+    def words(self) -> str:
+        """What is asked, for tables.
+
+        >>> Item("a", "", anchors=("fake", "natural")).words
+        'fake / natural'
+        """
+        return self.text or " / ".join(self.anchors)
 
     @property
     def answers(self) -> tuple[Answer, ...]:
@@ -178,22 +176,3 @@ class Questionnaire:
             total = sum(w * v for w, v in zip(weights, values, strict=True))
             return score.factor * total / len(score.weighted_by)
         return score.factor * sum(values) / (len(values) if score.combine == "mean" else 1)
-
-
-def bundled_questionnaires() -> tuple[str, ...]:
-    """Return the names of the questionnaires that come with the program."""
-    return tuple(sorted(path.stem for path in BUNDLED_FOLDER.glob("*.toml")))
-
-
-def bundled_questionnaire(name: str) -> Questionnaire:
-    """Return a questionnaire that comes with the program; raises AppError if there is none."""
-    if name not in bundled_questionnaires():
-        known = ", ".join(bundled_questionnaires())
-        raise AppError(f"no questionnaire '{name}' is bundled: choose from {known}")
-    path = BUNDLED_FOLDER / f"{name}.toml"
-    return TomlTable(bundled(path), path.name, "", AppError).fill(Questionnaire)
-
-
-def read_questionnaire(path: Path) -> Questionnaire:
-    """Read a questionnaire from a file; raises AppError."""
-    return TomlTable(read(path, QUESTIONNAIRE_FILE), str(path), "", AppError).fill(Questionnaire)

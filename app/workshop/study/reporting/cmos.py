@@ -1,13 +1,12 @@
-"""SampleComparison mean opinion scores: which of two videos suits the speech better.
+"""Comparison mean opinion scores: which of two videos suits the speech better.
 
 ITU-T P.800 (1996), annex E, comparison category rating, with five levels instead of seven;
 A. Fernández-Baena (2015), section 4.4.5.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import astuple, dataclass
-from statistics import NormalDist
+from statistics import fmean, median
 
 ANSWER_SCORES = (2, 1, 0, -1, -2)
 """Scores of the answers, in the order of the fields of `Votes`."""
@@ -50,6 +49,11 @@ class Votes:
         return sum(astuple(self))
 
     @property
+    def scores(self) -> list[int]:
+        """The score of each answer, the best ones first."""
+        return [s for s, n in zip(ANSWER_SCORES, astuple(self), strict=True) for _ in range(n)]
+
+    @property
     def better_share(self) -> float:
         """Share of answers that found the first video better, 0…1."""
         return (self.much_better + self.better) / self.total
@@ -62,7 +66,7 @@ class Votes:
     @property
     def mean(self) -> float:
         """The five-level score, −2…2."""
-        return sum(map(math.prod, zip(ANSWER_SCORES, astuple(self), strict=True))) / self.total
+        return fmean(self.scores)
 
     @property
     def three_level(self) -> float:
@@ -72,34 +76,7 @@ class Votes:
     @property
     def median(self) -> float:
         """The median of the scores, −2…2."""
-        scores = [s for s, n in zip(ANSWER_SCORES, astuple(self), strict=True) for _ in range(n)]
-        middle = self.total // 2
-        return (scores[middle] + scores[-middle - 1]) / 2
-
-    def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Return the confidence interval of the mean, by the normal distribution.
-
-        It takes the answers as independent; with several a rater, it is too narrow.
-        """
-        squares = zip(ANSWER_SCORES, astuple(self), strict=True)
-        variance = sum(n * (s - self.mean) ** 2 for s, n in squares) / max(self.total - 1, 1)
-        half = NormalDist().inv_cdf((1 + level) / 2) * math.sqrt(variance / self.total)
-        return self.mean - half, self.mean + half
-
-    def wilcoxon_p(self) -> float:
-        """Return the two-sided p of the signed-rank test that neither video is better.
-
-        F. Wilcoxon (1945); zeros are left out, the variance is corrected for ties.
-        """
-        ones, twos = self.better + self.worse, self.much_better + self.much_worse
-        count = ones + twos
-        if count == 0:
-            return 1.0
-        rank_sum = self.better * (ones + 1) / 2 + self.much_better * (ones + (twos + 1) / 2)
-        ties = sum(n**3 - n for n in (ones, twos)) / 48
-        deviation = math.sqrt(count * (count + 1) * (2 * count + 1) / 24 - ties)
-        z = (rank_sum - count * (count + 1) / 4) / deviation
-        return math.erfc(abs(z) / math.sqrt(2))
+        return median(self.scores)
 
 
 def ranking(comparisons: Mapping[tuple[str, str], Votes]) -> list[tuple[str, float]]:

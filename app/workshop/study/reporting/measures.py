@@ -55,10 +55,7 @@ def task_parts(data: StudyData) -> Iterator[str]:
             share = f"{reached} of {len(played)} ({percent(reached / len(played), 0)})"
             lines.append((_condition(condition), share, f"[{percent(low, 0)}, {percent(high, 0)}]"))
         yield table(ReportTable("Reached", ("condition", "reached", "95 % interval"), tuple(lines)))
-        times = {
-            condition: _per_person(played, "time_s")
-            for condition, played in _by(own, "condition").items()
-        }
+        times = _per_condition(own, "time_s")
         yield from _compared(data, f"Time to the goal [s]: {name}", times, "time [s]", (0.0, None))
 
 
@@ -80,11 +77,8 @@ def scale_parts(data: StudyData) -> Iterator[str]:
     if numeric:
         yield heading("Questions")
     for item, rows in numeric:
-        values = {
-            condition: _per_person(own, "answer")
-            for condition, own in _by(rows, "condition").items()
-        }
-        yield from _compared(data, item.text, values, _ends(item), (item.low, item.high))
+        values = _per_condition(rows, "answer")
+        yield from _compared(data, item.words, values, _ends(item), (item.low, item.high))
     if chosen:
         yield heading("Choices")
     for item, rows in chosen:
@@ -93,7 +87,7 @@ def scale_parts(data: StudyData) -> Iterator[str]:
         yield heading("Free answers")
     for item, rows in texts:
         said = [str(row["answer"]) for row in rows if row["answer"]]
-        yield heading(item.text, 3)
+        yield heading(item.words, 3)
         yield items(said) if said else paragraph("Nobody wrote anything.", "note")
 
 
@@ -142,10 +136,7 @@ def _scores(data: StudyData) -> Iterator[str]:
         yield heading("Scores")
     for name, rows in scores.items():
         for after, own in _by(rows, "after").items():
-            values = {
-                condition: _per_person(each, "value")
-                for condition, each in _by(own, "condition").items()
-            }
+            values = _per_condition(own, "value")
             title = f"{name}, after {after}" if after else name
             yield from _compared(data, title, values, name, None)
 
@@ -241,7 +232,7 @@ def _choices(item: Item, rows: Sequence[Row]) -> ReportTable:
             bounds = f"[{percent(low, 0)}, {percent(high, 0)}]"
             lines.append((option, _condition(condition), f"{count}/{len(given)}", share, bounds))
     columns = ("answer", "condition", "n", "share", "95 % interval")
-    return ReportTable(item.text, columns, tuple(lines))
+    return ReportTable(item.words, columns, tuple(lines))
 
 
 def _by(rows: Sequence[Row], key: str) -> dict[str, list[Row]]:
@@ -249,6 +240,11 @@ def _by(rows: Sequence[Row], key: str) -> dict[str, list[Row]]:
     for row in rows:
         found[str(row[key])].append(row)
     return dict(sorted(found.items()))
+
+
+def _per_condition(rows: Sequence[Row], key: str) -> dict[str, Values]:
+    """Return the values of all participants under each condition."""
+    return {name: _per_person(own, key) for name, own in _by(rows, "condition").items()}
 
 
 def _per_person(rows: Sequence[Row], key: str) -> dict[str, float]:

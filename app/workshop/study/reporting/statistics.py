@@ -74,23 +74,16 @@ def compare_paired(
     The effect is the matched-pairs rank-biserial correlation (D. S. Kerby, 2014).
     """
     change = np.asarray(first, float) - np.asarray(second, float)
-    low, high = _resampled(change, seed)
     kept = change[change != 0]
-    if not len(kept):
-        return SampleComparison(
-            "Wilcoxon signed-rank", 0.0, 1.0, 0.0, float(change.mean()), (low, high)
-        )
-    ranks = stats.rankdata(np.abs(kept))
-    effect = float((ranks[kept > 0].sum() - ranks[kept < 0].sum()) / ranks.sum())
-    found = stats.wilcoxon(kept)
-    return SampleComparison(
-        "Wilcoxon signed-rank",
-        float(found.statistic),
-        float(found.pvalue),
-        effect,
-        float(change.mean()),
-        (low, high),
-    )
+    statistic, p, effect = 0.0, 1.0, 0.0
+    if len(kept):
+        found = stats.wilcoxon(kept)
+        statistic, p = float(found.statistic), float(found.pvalue)
+        ranks = stats.rankdata(np.abs(kept))
+        effect = float((ranks[kept > 0].sum() - ranks[kept < 0].sum()) / ranks.sum())
+    interval = _middle(_resampled_means(change, np.random.default_rng(seed)))
+    test = "Wilcoxon signed-rank"
+    return SampleComparison(test, statistic, p, effect, float(change.mean()), interval)
 
 
 def compare_unpaired(
@@ -102,17 +95,11 @@ def compare_unpaired(
     same = len(np.unique(np.concatenate([one, other]))) == 1
     effect = float(2.0 * found.statistic / (len(one) * len(other)) - 1.0)
     rng = np.random.default_rng(seed)
-    means = [
-        each[rng.integers(0, len(each), (RESAMPLES, len(each)))].mean(1) for each in (one, other)
-    ]
-    low, high = np.quantile(means[0] - means[1], (0.025, 0.975))
+    interval = _middle(_resampled_means(one, rng) - _resampled_means(other, rng))
+    p = 1.0 if same else float(found.pvalue)
+    difference = float(one.mean() - other.mean())
     return SampleComparison(
-        "Mann–Whitney U",
-        float(found.statistic),
-        1.0 if same else float(found.pvalue),
-        effect,
-        float(one.mean() - other.mean()),
-        (float(low), float(high)),
+        "Mann–Whitney U", float(found.statistic), p, effect, difference, interval
     )
 
 
@@ -149,22 +136,18 @@ def share_interval(count: int, total: int) -> tuple[float, float]:
     return float(found.low), float(found.high)
 
 
-def sensitivity(hits: float, false_alarms: float) -> float:
-    """Return d′ from the rates of hits and of false alarms, both within 0…1.
-
-    >>> round(sensitivity(0.73, 0.46), 2)
-    0.71
-    """
-    return float(stats.norm.ppf(hits) - stats.norm.ppf(false_alarms))
-
-
 def sides_p(first_left: int, total: int) -> float:
     """Return p of the χ² test that the first of each pair was on the left in half of them."""
     return float(stats.chisquare([first_left, total - first_left]).pvalue)
 
 
-def _resampled(change: Array, seed: int) -> tuple[float, float]:
-    rng = np.random.default_rng(seed)
-    means = change[rng.integers(0, len(change), (RESAMPLES, len(change)))].mean(1)
-    low, high = np.quantile(means, (0.025, 0.975))
+def _resampled_means(values: Array, rng: np.random.Generator) -> Array:
+    """Return the means of bootstrap samples, (RESAMPLES,)."""
+    means: Array = values[rng.integers(0, len(values), (RESAMPLES, len(values)))].mean(1)
+    return means
+
+
+def _middle(values: Array) -> tuple[float, float]:
+    """Return between which two the middle 95 % of some values lie."""
+    low, high = np.quantile(values, (0.025, 0.975))
     return float(low), float(high)

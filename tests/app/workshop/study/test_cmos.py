@@ -1,13 +1,13 @@
-"""SampleComparison mean opinion scores, with the figures of the thesis (section 4.4.6)."""
+"""Comparison mean opinion scores, with the figures of the thesis (section 4.4.6)."""
 
 import math
+from statistics import stdev
 
 import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.app.workshop.study.bundled.gesture_and_speech import COUNTS as THESIS
 from cubeling.app.workshop.study.reporting.cmos import (
-    ANSWER_SCORES,
     PUBLISHED_THREE_LEVEL,
     Votes,
     ranking,
@@ -50,37 +50,16 @@ def test_the_order_is_original_intensity_time_random():
 def test_the_printed_significance_holds():
     # The thesis has p < 0.01 for one pair and p < 0.001 for the others, by t-tests.
     for pair, own in THESIS.items():
-        low, high = own.interval(0.99 if pair == ("time", "random") else 0.999)
-        assert low > 0 or high < 0
+        z = own.mean / (stdev(own.scores) / math.sqrt(own.total))
+        p = math.erfc(abs(z) / math.sqrt(2))
+        assert p < (0.01 if pair == ("time", "random") else 0.001)
 
 
 @given(votes)
 def test_swapping_the_videos_turns_the_score_round(own):
     other = Votes(own.much_worse, own.worse, own.same, own.better, own.much_better)
     assert other.mean == pytest.approx(-own.mean)
-    assert other.wilcoxon_p() == pytest.approx(own.wilcoxon_p())
-    low, high = own.interval()
-    assert low <= own.mean <= high
-
-
-@pytest.mark.full
-@pytest.mark.slow(reason="scipy.stats is imported, here only, as that takes a second")
-@given(votes)
-def test_the_signed_rank_test_is_that_of_scipy(own):
-    from scipy.stats import wilcoxon
-
-    scores = [
-        score
-        for score, count in zip(
-            ANSWER_SCORES,
-            (own.much_better, own.better, own.same, own.worse, own.much_worse),
-            strict=True,
-        )
-        for _ in range(count)
-    ]
-    if any(scores):
-        theirs = wilcoxon(scores, method="approx").pvalue
-        assert math.isclose(own.wilcoxon_p(), theirs, rel_tol=1e-6)
+    assert other.median == -own.median
 
 
 def test_no_votes_are_refused():

@@ -28,7 +28,6 @@ from cubeling.app.workshop.study.reporting.statistics import (
     compare_several,
     compare_unpaired,
     describe,
-    sensitivity,
 )
 from tests.examples import some
 
@@ -61,7 +60,6 @@ def test_the_printed_scores_of_gestures_follow_from_counts():
 
 def test_d_prime_follows_from_the_printed_rates():
     assert whose_idle_motion.d_prime(0.73, 0.54) == pytest.approx(0.713, abs=5e-4)
-    assert sensitivity(0.73, 0.46) == pytest.approx(whose_idle_motion.d_prime(0.73, 0.54))
     rows = {row[0]: row[2] for row in whose_idle_motion.printed_tables()[0].rows}
     assert (rows["right in all"], rows["d′"]) == ("63.5 %", "0.71")
 
