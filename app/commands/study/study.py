@@ -127,6 +127,7 @@ def run(
         return
     from datetime import datetime
 
+    from cubeling.app.ui.local_pages import LocalPages
     from cubeling.app.workshop.study.participants.live_task import TaskSetup
     from cubeling.app.workshop.study.participants.page_desk import PageDesk
     from cubeling.app.workshop.study.participants.terminal import TerminalDesk
@@ -142,9 +143,9 @@ def run(
             desk: StudyDesk = TerminalDesk(loaded, setup, console)
             if page:
                 folder = Path() if file.parent == BUNDLED_FOLDER else file.parent
-                desk = opened = PageDesk(loaded, setup, folder)
-                closing.callback(opened.close)
+                opened = PageDesk(loaded, setup, folder, closing.enter_context(LocalPages()))
                 console.print(Text.assemble("The participant's page: ", (opened.address, "cyan")))
+                desk = opened
             run_participant(loaded, log, desk)
             if isinstance(desk, PageDesk):
                 desk.thank()

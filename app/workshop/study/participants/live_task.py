@@ -8,6 +8,7 @@ from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.encoding import MESSAGE_TYPES
+from cubeling.app.workshop.study.participants.study_log import ParticipantLog
 from cubeling.app.workshop.study.protocols.goals import (
     GOAL_TOPICS,
     GoalWatch,
@@ -35,29 +36,30 @@ class TaskSetup:
     intrinsics: Path | None = None
 
 
-def task_options(
+def play_step(
     task: StudyTask,
     settings: Settings,
-    table: TaskSetup,
-    record: Path,
-    participant: str,
+    setup: TaskSetup,
+    log: ParticipantLog,
     condition: str,
-) -> SessionOptions:
-    """Return the session of a task."""
-    return SessionOptions(
+) -> tuple[TaskResult, str]:
+    """Play a task of a participant, and return how it ended, and the name of its recording."""
+    record = free_recording(log.folder, task, condition)
+    options = SessionOptions(
         scenario=task.scenario,
-        source=table.source,
+        source=setup.source,
         character=settings.character,
         personality=settings.personality,
         controller=settings.controller,
         turns=settings.turns,
-        robot=table.robot,
-        intrinsics=table.intrinsics,
-        pictures=table.pictures,
+        robot=setup.robot,
+        intrinsics=setup.intrinsics,
+        pictures=setup.pictures,
         record=record,
-        participant=participant,
+        participant=log.code,
         condition=condition,
     )
+    return play_task(options, task), record.name
 
 
 def play_task(options: SessionOptions, task: StudyTask) -> TaskResult:

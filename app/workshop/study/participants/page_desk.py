@@ -5,24 +5,18 @@ that is closed in mid-question is opened again at the same address, where the qu
 """
 
 import queue
-import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
-from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Any
 from urllib.parse import parse_qs
 
-from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
+from cubeling.app.ui.local_pages import HTML, LocalPages, PageReply
 from cubeling.app.workshop.study.participants.live_task import (
     TaskSetup,
-    free_recording,
-    play_task,
-    task_options,
+    play_step,
 )
 from cubeling.app.workshop.study.participants.question_page import (
     question_page,
@@ -41,8 +35,8 @@ from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, S
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
 from cubeling.files import FileKind
 
-MAX_ANSWER_BYTES = 65_536
-"""Longest answer that is read [bytes]."""
+MAX_FIELDS = 16
+"""Most fields of a form."""
 
 MAX_STIMULUS_BYTES = 1 << 30
 
@@ -71,7 +65,7 @@ class ShownPage:
 
 
 class PageDesk:
-    """Asks on a page; a `StudyDesk`. Close it after use; a second `close` does nothing.
+    """Asks on a page; a `StudyDesk` and a `LocalPage`.
 
     Parameters
     ----------
@@ -81,32 +75,19 @@ class PageDesk:
         How tasks are played.
     folder
         Where the stimuli are.
+    pages
+        Serves the page; whoever opened it closes it.
     """
 
-    def __init__(self, protocol: Protocol, setup: TaskSetup, folder: Path) -> None:
+    def __init__(
+        self, protocol: Protocol, setup: TaskSetup, folder: Path, pages: LocalPages
+    ) -> None:
         self._protocol, self._setup, self._folder = protocol, setup, folder
-        self._token = Token.generate()
         self._shown = ShownPage(-1, waiting_page("The study begins in a moment"))
-        self._count, self._closed = 0, False
+        self._count = 0
         self._answers: queue.Queue[tuple[int, str]] = queue.Queue()
-        self._server = ThreadingHTTPServer(("127.0.0.1", 0), self._handler())
-        self._server.daemon_threads = True
-        self._thread = threading.Thread(target=self._server.serve_forever, daemon=True)
-        self._thread.start()
-
-    @property
-    def address(self) -> str:
+        self.address = pages.open(self)
         """Where the participant's browser finds the page."""
-        return f"http://127.0.0.1:{self._server.server_port}/{self._token.text}"
-
-    def close(self) -> None:
-        """Stop serving the page; a second call does nothing."""
-        if self._closed:
-            return
-        self._closed = True
-        self._server.shutdown()
-        self._server.server_close()
-        self._thread.join(timeout=5.0)
 
     def now(self) -> datetime:
         """Return the local time of this computer."""
@@ -123,7 +104,7 @@ class PageDesk:
 
         def make(number: int, problem: str) -> ShownPage:
             shown = [
-                (f"{self._token.text}/{number}/{place}", MEDIA_TYPES[file.suffix.lower()], caption)
+                (f"{self.address}/{number}/{place}", MEDIA_TYPES[file.suffix.lower()], caption)
                 for place, (file, caption) in enumerate(zip(files, captions, strict=True))
             ]
             page = question_page(number, questionnaire, item, shown, problem)
@@ -143,13 +124,35 @@ class PageDesk:
         """Say what the task is, and let it be played in a window."""
         self.tell(task.name, task.text)
         self._shown = ShownPage(-1, waiting_page("Look at the other window: you play now"))
-        record = free_recording(log.folder, task, step.condition)
-        options = task_options(task, settings, self._setup, record, log.code, step.condition)
-        return play_task(options, task), record.name
+        return play_step(task, settings, self._setup, log, step.condition)
 
     def thank(self) -> None:
         """Show that all is done."""
         self._shown = ShownPage(-1, waiting_page("Thank you! You have finished."))
+
+    def get(self, place: str) -> PageReply | None:
+        """Return the page, or a stimulus that is shown on it."""
+        shown = self._shown
+        if not place:
+            return PageReply(HTML, shown.html.encode())
+        number, _, index = place.partition("/")
+        known = number == f"{shown.number}" and index.isdecimal() and len(index) < 3
+        if not known or int(index) >= len(shown.files):
+            return None
+        file = shown.files[int(index)]
+        return PageReply(MEDIA_TYPES[file.suffix.lower()], STIMULUS_FILE.read(file))
+
+    def post(self, data: bytes) -> None:
+        """Take an answer, and show what follows."""
+        try:
+            text = data.decode()
+            fields = parse_qs(text, keep_blank_values=True, max_num_fields=MAX_FIELDS)
+        except ValueError:  # this is no form of ours
+            return
+        number = fields.get("number", [""])[0]
+        if number.isdecimal() and len(number) < 9:
+            self._answers.put((int(number), fields.get("answer", [""])[0]))
+            self._wait_for_next(int(number))
 
     def _files(self, step: PlannedStep) -> tuple[Path, ...]:
         if not step.stimulus:
@@ -179,70 +182,3 @@ class PageDesk:
         end = time.monotonic() + NEXT_S
         while self._shown.number in (number, -1) and time.monotonic() < end:
             time.sleep(0.02)
-
-    def _handler(self) -> type[BaseHTTPRequestHandler]:
-        desk = self
-
-        class Handler(BaseHTTPRequestHandler):
-            timeout = 30.0
-
-            def do_GET(self) -> None:
-                shown = desk._shown
-                path, _, rest = self.path.lstrip("/").partition("/")
-                if not desk._token.admits(path) or not self._is_local():
-                    self.send_error(HTTPStatus.NOT_FOUND)
-                elif not rest:
-                    self._send("text/html; charset=utf-8", shown.html.encode())
-                else:
-                    self._send_stimulus(shown, rest)
-
-            def do_POST(self) -> None:
-                length = self.headers.get("Content-Length", "")
-                path = self.path.lstrip("/")
-                if not desk._token.admits(path) or not self._is_local():
-                    self.send_error(HTTPStatus.NOT_FOUND)
-                    return
-                if not length.isdecimal() or int(length) > MAX_ANSWER_BYTES:
-                    self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
-                    return
-                text = self.rfile.read(int(length)).decode(errors="replace")
-                fields = parse_qs(text, keep_blank_values=True, max_num_fields=16)
-                number = fields.get("number", [""])[0]
-                if number.isdecimal() and len(number) < 9:
-                    desk._answers.put((int(number), fields.get("answer", [""])[0]))
-                    desk._wait_for_next(int(number))
-                self.send_response(HTTPStatus.SEE_OTHER)
-                self.send_header("Location", f"/{path}")
-                self.send_header("Content-Length", "0")
-                self.end_headers()
-
-            def _is_local(self) -> bool:
-                """Return whether the page was asked for by this address, not by a name for it."""
-                return self.headers.get("Host", "").rpartition(":")[0] in ("127.0.0.1", "localhost")
-
-            def _send_stimulus(self, shown: ShownPage, rest: str) -> None:
-                number, _, place = rest.partition("/")
-                known = number == f"{shown.number}" and place.isdecimal() and len(place) < 3
-                if not known or int(place) >= len(shown.files):
-                    self.send_error(HTTPStatus.NOT_FOUND)
-                    return
-                file = shown.files[int(place)]
-                self._send(MEDIA_TYPES[file.suffix.lower()], STIMULUS_FILE.read(file))
-
-            def _send(self, kind: str, content: bytes) -> None:
-                self.send_response(HTTPStatus.OK)
-                self.send_header("Content-Type", kind)
-                self.send_header("Content-Length", f"{len(content)}")
-                self.send_header("Cache-Control", "no-store")
-                self.send_header(
-                    "Content-Security-Policy",
-                    "default-src 'none'; img-src 'self'; media-src 'self'; "
-                    "style-src 'unsafe-inline'; form-action 'self'",
-                )
-                self.end_headers()
-                self.wfile.write(content)
-
-            def log_message(self, format: str, *args: Any) -> None:
-                """Keep the terminal for the experimenter."""
-
-        return Handler

@@ -9,9 +9,7 @@ from rich.text import Text
 from cubeling.app.errors import AppError
 from cubeling.app.workshop.study.participants.live_task import (
     TaskSetup,
-    free_recording,
-    play_task,
-    task_options,
+    play_step,
 )
 from cubeling.app.workshop.study.participants.stimulus_files import names_of
 from cubeling.app.workshop.study.participants.study_log import ParticipantLog
@@ -33,8 +31,8 @@ class TerminalDesk:
     Ctrl-D ends the study for now, as Ctrl-C does: what was answered is kept.
     """
 
-    def __init__(self, protocol: Protocol, table: TaskSetup, console: Console) -> None:
-        self._protocol, self._table, self._console = protocol, table, console
+    def __init__(self, protocol: Protocol, setup: TaskSetup, console: Console) -> None:
+        self._protocol, self._setup, self._console = protocol, setup, console
         self._about: tuple[str, int] | None = None
 
     def now(self) -> datetime:
@@ -69,12 +67,10 @@ class TerminalDesk:
     ) -> tuple[TaskResult, str]:
         """Say what the task is, and let it be played."""
         self.tell(task.name, task.text)
-        record = free_recording(log.folder, task, step.condition)
-        options = task_options(task, settings, self._table, record, log.code, step.condition)
-        result = play_task(options, task)
+        result, recording = play_step(task, settings, self._setup, log, step.condition)
         words = f"after {result.time_s:.1f} s" if result.time_s is not None else "not reached"
         self._console.print(Text(f"{task.goal.words}: {words}", "dim"))
-        return result, record.name
+        return result, recording
 
     def _read(self, prompt: str) -> str:
         try:

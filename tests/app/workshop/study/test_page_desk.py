@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
+from cubeling.app.ui.local_pages import LocalPages
 from cubeling.app.workshop.study.participants.live_task import TaskSetup
 from cubeling.app.workshop.study.participants.page_desk import PageDesk
 from cubeling.app.workshop.study.participants.running import run_participant
@@ -105,7 +106,8 @@ def study(tmp_path):
 @contextmanager
 def led(study, folder):
     """Lead a participant on a page, in a thread; yield a browser."""
-    desk = PageDesk(study.protocol, TaskSetup(), folder)
+    pages = LocalPages()
+    desk = PageDesk(study.protocol, TaskSetup(), folder, pages)
     failed = []
 
     def lead():
@@ -122,8 +124,8 @@ def led(study, folder):
         thread.join(timeout=5)
         assert not thread.is_alive()
     finally:
-        desk.close()
-        desk.close()
+        pages.close()
+        pages.close()
 
 
 def test_a_participant_reads_sees_and_answers_on_a_page(study, tmp_path):
@@ -131,7 +133,7 @@ def test_a_participant_reads_sees_and_answers_on_a_page(study, tmp_path):
         assert "Welcome &lt;you&gt;." in browser.page()
         first = browser.send("")
         page = browser.page()
-        pictures = re.findall(r'src="[^/]*(/\d+/\d)"', page)
+        pictures = re.findall(r'src="[^"]*(/\d+/\d)"', page)
         assert len(pictures) == 2
         (step,) = (s for s in study.begin("P02", datetime(2026, 5, 4)).plan if s.item == "side")
         decoded = [cv2.imdecode(np.frombuffer(browser.get(p), np.uint8), 1) for p in pictures]
