@@ -34,7 +34,7 @@ class PageReply:
     """What a browser gets."""
 
     kind: str
-    """Its media type."""
+    """The media type of the content, as "image/png"."""
 
     content: bytes
     policy: str = FORM_POLICY

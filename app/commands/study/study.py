@@ -1,10 +1,9 @@
 """The commands of `cubeling study`."""
 
 import shlex
-import time
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -16,15 +15,18 @@ from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character
 from cubeling.app.output_path import check_output, check_output_folder, output_folder
+from cubeling.app.ui.display import has_display
 from cubeling.files import write_whole
+
+if TYPE_CHECKING:
+    from cubeling.app.workshop.study.participants.live_task import TaskSetup
+    from cubeling.app.workshop.study.participants.running import StudyDesk
+    from cubeling.app.workshop.study.protocols.protocol import Protocol
 
 app = CommandGroup("Run a study: orders, tasks, questionnaires, simulated participants, a report.")
 
 MAX_SIMULATED = 2000
 """Most simulated participants of a study."""
-
-GOODBYE_S = 2.5
-"""How long the last page may be fetched that thanks the participant [s]."""
 
 PLAY_GROUP = "How tasks are played"
 
@@ -76,6 +78,9 @@ def run(
             "--page", help="Ask on a page of this computer, in a browser, not in the terminal."
         ),
     ] = False,
+    window: Annotated[
+        bool, typer.Option("--window", help="Ask in a window, not in the terminal.")
+    ] = False,
     source: Annotated[
         str, typer.Option("--source", "-s", help="The camera.", rich_help_panel=PLAY_GROUP)
     ] = "camera:0",
@@ -105,13 +110,11 @@ def run(
         raise AppError("simulated participants have codes of their own: leave out --participant")
     if not simulated and not participant:
         raise AppError("who takes part needs a code: --participant P01, or --simulated 24")
+    if page and window:
+        raise AppError("questions are asked on a page or in a window: leave out one")
     if not output.parent.is_dir():
         raise AppError(f"there is no folder '{output.parent}' for the study '{output.name}'")
-    from cubeling.app.workshop.study.participants.running import (
-        StudyDesk,
-        run_participant,
-        run_simulated,
-    )
+    from cubeling.app.workshop.study.participants.running import run_participant, run_simulated
     from cubeling.app.workshop.study.participants.study_log import StudyFolder
     from cubeling.app.workshop.study.protocols.protocol_file import load_protocol
 
@@ -127,31 +130,21 @@ def run(
         return
     from datetime import datetime
 
-    from cubeling.app.ui.local_pages import LocalPages
     from cubeling.app.workshop.study.participants.live_task import TaskSetup
-    from cubeling.app.workshop.study.participants.page_desk import PageDesk
-    from cubeling.app.workshop.study.participants.terminal import TerminalDesk
-    from cubeling.app.workshop.study.protocols.protocol_file import BUNDLED_FOLDER
 
     log = study.begin(participant, datetime.now())
     done = len(log.plan) - len(log.left)
     if done:
         console.print(Text(f"{participant} goes on after {quantity(done, 'step')}.", "dim"))
     setup = TaskSetup(source, robot, pictures, intrinsics)
+    place = "page" if page else "window" if window else "terminal"
     try:
         with ExitStack() as closing:
-            desk: StudyDesk = TerminalDesk(loaded, setup, console)
-            if page:
-                folder = Path() if file.parent == BUNDLED_FOLDER else file.parent
-                opened = PageDesk(loaded, setup, folder, closing.enter_context(LocalPages()))
-                console.print(Text.assemble("The participant's page: ", (opened.address, "cyan")))
-                desk = opened
+            desk = _open_desk(place, loaded, setup, file, console, closing)
             run_participant(loaded, log, desk)
-            if isinstance(desk, PageDesk):
-                desk.thank()
-                time.sleep(GOODBYE_S)
+            desk.thank()
     except KeyboardInterrupt:
-        asked = ["--page"] if page else []
+        asked = [f"--{place}"] if place != "terminal" else []
         again = shlex.join(["cubeling", "study", "run", protocol, "-o", str(output), *asked])
         console.print(
             Text(
@@ -161,6 +154,36 @@ def run(
         )
         raise
     console.print(Text(f"Thank you, {participant}. All answers are kept in {log.folder}"))
+
+
+def _open_desk(
+    place: str,
+    protocol: "Protocol",
+    setup: "TaskSetup",
+    file: Path,
+    console: Console,
+    closing: ExitStack,
+) -> "StudyDesk":
+    """Open what asks the participant: a terminal, a window or a page; the stack closes it."""
+    from cubeling.app.workshop.study.protocols.protocol_file import BUNDLED_FOLDER
+
+    folder = Path() if file.parent == BUNDLED_FOLDER else file.parent
+    if place == "window":
+        if not has_display():
+            raise AppError("there is no display here for a window: leave out --window, or --page")
+        from cubeling.app.workshop.study.window.window_desk import WindowDesk
+
+        return closing.enter_context(WindowDesk(protocol, setup, folder))
+    if place == "page":
+        from cubeling.app.ui.local_pages import LocalPages
+        from cubeling.app.workshop.study.participants.page_desk import PageDesk
+
+        desk = PageDesk(protocol, setup, folder, closing.enter_context(LocalPages()))
+        console.print(Text.assemble("The participant's page: ", (desk.address, "cyan")))
+        return desk
+    from cubeling.app.workshop.study.participants.terminal import TerminalDesk
+
+    return TerminalDesk(protocol, setup, console)
 
 
 @app.command()

@@ -88,6 +88,10 @@ class GLPainter:
         """Swap the back buffer to the front, without waiting for the screen."""
         glfw.swap_buffers(self._window)
 
+    def finish(self) -> None:
+        """Wait until the driver has done all, the swap too."""
+        self._context.finish()
+
     def pixels(self) -> Picture:
         """Return the back buffer, which is undefined after `show`."""
         wide, high = self._window_size

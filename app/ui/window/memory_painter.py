@@ -58,6 +58,10 @@ class MemoryPainter:
         """Let the server show it."""
         self._shared.show()
 
+    def finish(self) -> None:
+        """Wait until the server has copied it."""
+        self._shared.finish()
+
     def pixels(self) -> Picture:
         """Return what was painted."""
         return np.asarray(cv2.cvtColor(self._pixels, cv2.COLOR_BGRA2BGR), np.uint8)

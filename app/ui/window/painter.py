@@ -49,6 +49,9 @@ class Painter(Protocol):
     def show(self) -> None:
         """Show what was painted."""
 
+    def finish(self) -> None:
+        """Wait until the display has what was shown."""
+
     def pixels(self) -> Picture:
         """Return what was painted, (height, width, 3) BGR of the window; not what is shown."""
 

@@ -150,7 +150,7 @@ class SharedPicture:
 
         They are new if the size is. Where the server takes no more memory, nothing is shown.
         """
-        self._wait()
+        self.finish()
         if self._pixels.shape[:2] != (height, width) and not self._share(width, height):
             self._pixels = np.zeros((height, width, 4), np.uint8)
         return self._pixels
@@ -170,8 +170,8 @@ class SharedPicture:
         """Disconnect; the server then forgets the memory."""
         self._xcb.close()
 
-    def _wait(self) -> None:
-        """Wait until the server has read what is shown."""
+    def finish(self) -> None:
+        """Wait until the server has read what is shown, and so shows it."""
         if self._read is not None:
             self._xcb.reply("xcb_get_input_focus", _Geometry, self._read)
             self._read = None

@@ -186,6 +186,11 @@ class WindowSurface:
         self._painter.show()
         self.poll()
 
+    def present_now(self) -> None:
+        """Show what was drawn, and return when the display has it."""
+        self._painter.show()
+        self._painter.finish()
+
     def poll(self) -> None:
         """Process the events of all windows."""
         glfw.poll_events()

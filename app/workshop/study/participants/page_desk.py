@@ -12,6 +12,8 @@ from datetime import datetime
 from pathlib import Path
 from urllib.parse import parse_qs
 
+import cv2
+
 from cubeling.app.errors import AppError
 from cubeling.app.ui.local_pages import HTML, LocalPages, PageReply
 from cubeling.app.workshop.study.participants.live_task import (
@@ -25,31 +27,28 @@ from cubeling.app.workshop.study.participants.question_page import (
 )
 from cubeling.app.workshop.study.participants.stimulus_files import (
     MEDIA_TYPES,
-    find_file,
-    names_of,
+    STIMULUS_FILE,
+    captions_of,
+    files_of,
+    pictures_of,
 )
 from cubeling.app.workshop.study.participants.study_log import ParticipantLog
 from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
 from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, StudyTask
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
-from cubeling.files import FileKind
 
 MAX_FIELDS = 16
 """Most fields of a form."""
 
-MAX_STIMULUS_BYTES = 1 << 30
-
 NEXT_S = 1.0
 """How long an answer waits at most for the page that follows [s]."""
 
+GOODBYE_S = 2.5
+"""How long the last page may be fetched that thanks the participant [s]."""
+
 POLL_S = 0.2
 """How often a wait looks for Ctrl-C [s]."""
-
-STIMULUS_FILE = FileKind(
-    "stimulus", tuple(MEDIA_TYPES), AppError, MAX_STIMULUS_BYTES, "pathlib:Path.read_bytes"
-)
-"""A picture or a film that is shown."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +59,8 @@ class ShownPage:
     """Which answer it waits for; −1 for none."""
 
     html: str
-    files: tuple[Path, ...] = ()
-    """What is shown on it."""
+    shown: tuple[Path | PageReply, ...] = ()
+    """What is shown on it: files, and pictures of answers."""
 
 
 class PageDesk:
@@ -78,6 +77,8 @@ class PageDesk:
     pages
         Serves the page; whoever opened it closes it.
     """
+
+    onset = None
 
     def __init__(
         self, protocol: Protocol, setup: TaskSetup, folder: Path, pages: LocalPages
@@ -99,16 +100,21 @@ class PageDesk:
 
     def ask(self, step: PlannedStep, questionnaire: Questionnaire, item: Item) -> Answer:
         """Show what the question is about and the question, until there is an answer."""
-        files = self._files(step)
-        captions = ("left", "right") if len(files) == 2 else ("",) * len(files)
+        files = files_of(self._protocol, step, self._folder)
+        pictures = [
+            PageReply("image/png", cv2.imencode(".png", picture)[1].tobytes())
+            for picture in pictures_of(item, self._folder)
+        ]
 
         def make(number: int, problem: str) -> ShownPage:
+            at = f"{self.address}/{number}"
             shown = [
-                (f"{self.address}/{number}/{place}", MEDIA_TYPES[file.suffix.lower()], caption)
-                for place, (file, caption) in enumerate(zip(files, captions, strict=True))
+                (f"{at}/{place}", MEDIA_TYPES[file.suffix.lower()], caption)
+                for place, (file, caption) in enumerate(zip(files, captions_of(files), strict=True))
             ]
-            page = question_page(number, questionnaire, item, shown, problem)
-            return ShownPage(number, page, files)
+            points = [f"{at}/{len(files) + place}" for place in range(len(pictures))]
+            page = question_page(number, questionnaire, item, shown, points, problem)
+            return ShownPage(number, page, (*files, *pictures))
 
         problem = ""
         while True:
@@ -127,8 +133,9 @@ class PageDesk:
         return play_step(task, settings, self._setup, log, step.condition)
 
     def thank(self) -> None:
-        """Show that all is done."""
+        """Show that all is done, for as long as a browser needs to fetch it."""
         self._shown = ShownPage(-1, waiting_page("Thank you! You have finished."))
+        time.sleep(GOODBYE_S)
 
     def get(self, place: str) -> PageReply | None:
         """Return the page, or a stimulus that is shown on it."""
@@ -137,9 +144,11 @@ class PageDesk:
             return PageReply(HTML, shown.html.encode())
         number, _, index = place.partition("/")
         known = number == f"{shown.number}" and index.isdecimal() and len(index) < 3
-        if not known or int(index) >= len(shown.files):
+        if not known or int(index) >= len(shown.shown):
             return None
-        file = shown.files[int(index)]
+        file = shown.shown[int(index)]
+        if isinstance(file, PageReply):
+            return file
         return PageReply(MEDIA_TYPES[file.suffix.lower()], STIMULUS_FILE.read(file))
 
     def post(self, data: bytes) -> None:
@@ -153,16 +162,6 @@ class PageDesk:
         if number.isdecimal() and len(number) < 9:
             self._answers.put((int(number), fields.get("answer", [""])[0]))
             self._wait_for_next(int(number))
-
-    def _files(self, step: PlannedStep) -> tuple[Path, ...]:
-        if not step.stimulus:
-            return ()
-        names = names_of(self._protocol.stimuli[step.part], step)
-        found = [(name, find_file(name, self._folder)) for name in names]
-        for name, file in found:
-            if file is None:
-                raise AppError(f"there is no stimulus '{name}' in '{self._folder}'")
-        return tuple(file for _, file in found if file is not None)
 
     def _wait_for(self, make: Callable[[int, str], ShownPage], problem: str = "") -> str:
         """Show a page until it is answered; what an earlier one sends again is left out."""

@@ -20,6 +20,9 @@ p.text { white-space: pre-line; }
   padding: .5rem .25rem; border-radius: 6px; }
 .scale label:hover, .choice label:hover { background: #eef3fa; }
 .scale input, .choice input { display: block; width: 1.6rem; height: 1.6rem; margin: .4rem auto; }
+.scale img { display: block; max-width: 100%; height: 5rem; margin: 0 auto; }
+.opposites { align-items: center; font-size: 1.2rem; }
+.opposites span { flex: 3; } .opposites span:first-child { text-align: right; }
 .choice label { display: flex; gap: .75rem; align-items: center; padding: .25rem .75rem; }
 .choice input { margin: .25rem 0; }
 .ends { display: flex; justify-content: space-between; color: #667085; font-size: .9rem; }
@@ -57,6 +60,7 @@ def question_page(
     questionnaire: Questionnaire,
     item: Item,
     shown: Sequence[tuple[str, str, str]] = (),
+    pictures: Sequence[str] = (),
     problem: str = "",
 ) -> str:
     """Return the page of a question.
@@ -69,6 +73,8 @@ def question_page(
         What is asked.
     shown
         Address, media type and caption of each stimulus, from left to right.
+    pictures
+        Address of a picture for each answer; none for words alone.
     problem
         Why the last answer was none; "" for no reason.
     """
@@ -76,7 +82,8 @@ def question_page(
     warning = f'<p class="problem">{escape(problem)}</p>' if problem else ""
     figures = "".join(_figure(*each) for each in shown)
     seen = f'<div class="shown">{figures}</div>' if shown else ""
-    body = f"<h1>{escape(title)}</h1>{seen}<h2>{escape(item.text)}</h2>{warning}{_field(item)}"
+    asked = f"<h2>{escape(item.text)}</h2>" if item.text else ""
+    body = f"<h1>{escape(title)}</h1>{seen}{asked}{warning}{_field(item, pictures)}"
     return page_of(title, _form(number, body, "Go on"))
 
 
@@ -95,7 +102,7 @@ def _figure(address: str, kind: str, caption: str) -> str:
     return f'<figure><img src="{place}" alt="">{words}</figure>'
 
 
-def _field(item: Item) -> str:
+def _field(item: Item, pictures: Sequence[str]) -> str:
     if item.kind == "text":
         return '<textarea name="answer" rows="4"></textarea>'
     if item.kind == "choice":
@@ -117,8 +124,16 @@ def _field(item: Item) -> str:
         )
     named = len(item.anchors) == len(item.answers) > 2
     words = item.anchors if named else tuple(f"{point:g}" for point in item.answers)
+    if not item.text:  # between two opposites, which stand beside the circles
+        words = ("",) * len(words)
+    images = [f'<img src="{escape(place, quote=True)}" alt="">' for place in pictures]
     points = "".join(
-        f'<label><input type="radio" name="answer" value="{point:g}">{escape(word)}</label>'
-        for point, word in zip(item.answers, words, strict=True)
+        f'<label>{image}<input type="radio" name="answer" value="{point:g}">{escape(word)}</label>'
+        for point, word, image in zip(
+            item.answers, words, images or ("",) * len(words), strict=True
+        )
     )
+    if not item.text:
+        left, right = f"<span>{escape(low)}</span>", f"<span>{escape(high)}</span>"
+        return f'<div class="scale opposites">{left}{points}{right}</div>'
     return f'<div class="scale">{points}</div>{"" if named else ends}'

@@ -14,6 +14,9 @@ from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Q
 class StudyDesk(Interface):
     """Where a participant sits: reads, plays and answers."""
 
+    onset: datetime | None
+    """When what the last question is about was on the screen; None where that is not known."""
+
     def now(self) -> datetime:
         """Return the local time, by which entries of the log are dated."""
         ...
@@ -30,6 +33,10 @@ class StudyDesk(Interface):
         self, step: PlannedStep, task: StudyTask, settings: Settings, log: ParticipantLog
     ) -> tuple[TaskResult, str]:
         """Let the participant play, and return how it ended, and the name of the recording."""
+        ...
+
+    def thank(self) -> None:
+        """Show that all is done."""
         ...
 
 
@@ -60,6 +67,8 @@ def run_participant(
             questionnaire = protocol.questionnaires[step.questionnaire]
             item = next(each for each in questionnaire.item if each.name == step.item)
             found = {"answer": desk.ask(step, questionnaire, item)}
+            if desk.onset is not None:
+                found["onset_at"] = desk.onset.isoformat(timespec="microseconds")
         now = desk.now()
         seconds = round((now - began).total_seconds(), 3)
         log.write({"key": step.key, **found, "seconds": seconds}, now)

@@ -41,6 +41,8 @@ AnswerModel = Callable[[np.random.Generator, PlannedStep, Item], Answer]
 class SimulatedDesk:
     """Answers and plays by itself; a `StudyDesk`."""
 
+    onset = None
+
     def __init__(self, protocol: Protocol, number: int) -> None:
         self._now = BEGIN + timedelta(days=number)
         self._rng = np.random.default_rng([protocol.seed, 2_000_003, number])
@@ -69,6 +71,9 @@ class SimulatedDesk:
         result = simulate_task(task, settings, self._rng)
         self._pass(result.played_s)
         return result, ""
+
+    def thank(self) -> None:
+        """Do nothing: simulated participants expect no thanks."""
 
     def _pass(self, seconds: float) -> None:
         self._now += timedelta(seconds=round(seconds, 3))

@@ -31,6 +31,8 @@ class TerminalDesk:
     Ctrl-D ends the study for now, as Ctrl-C does: what was answered is kept.
     """
 
+    onset = None
+
     def __init__(self, protocol: Protocol, setup: TaskSetup, console: Console) -> None:
         self._protocol, self._setup, self._console = protocol, setup, console
         self._about: tuple[str, int] | None = None
@@ -71,6 +73,9 @@ class TerminalDesk:
         words = f"after {result.time_s:.1f} s" if result.time_s is not None else "not reached"
         self._console.print(Text(f"{task.goal.words}: {words}", "dim"))
         return result, recording
+
+    def thank(self) -> None:
+        """Say nothing: the command thanks."""
 
     def _read(self, prompt: str) -> str:
         try:

@@ -164,5 +164,9 @@ class Protocol:
     files: tuple[str, ...] = ()
     """Files beside it that it reads: questionnaires and scenarios."""
 
+    light_patch: bool = False
+    """Whether a square in the corner of the window is white while a stimulus is shown, and else
+    black: for a light sensor."""
+
     printed: str = ""
     """The module with printed tables and simulated participants, of `bundled`; "" for none."""

@@ -48,7 +48,17 @@ MAX_LIMIT_S = 7200.0
 ORDERS = ("fixed", "latin", "random")
 
 KEYS = (
-    *("title", "about", "conditions", "design", "order", "seed", "printed", "condition"),
+    *(
+        "title",
+        "about",
+        "conditions",
+        "design",
+        "order",
+        "seed",
+        "light_patch",
+        "printed",
+        "condition",
+    ),
     *("phase", "instruction", "task", "questionnaire", "stimuli", "resume", "preregistered"),
 )
 
@@ -113,6 +123,7 @@ def _protocol(file: TomlTable, path: Path) -> Protocol:
                 (*_files(file, "questionnaire", "file"), *_files(file, "task", "scenario"))
             )
         ),
+        file.truth("light_patch", False),
         file.line("printed", ""),
     )
     _check_whole(protocol, file)

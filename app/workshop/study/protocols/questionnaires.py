@@ -7,6 +7,9 @@ from typing import Literal
 
 from cubeling.app.errors import AppError
 
+FACES = "faces"
+"""Names faces from angry to happy as the pictures of a scale."""
+
 Answer = float | str | None
 """A number for scales and sliders, text for choices and free text, None for no answer."""
 
@@ -36,6 +39,10 @@ class Item:
     options: tuple[str, ...] = ()
     """What a choice offers."""
 
+    pictures: tuple[str, ...] = ()
+    """A picture for each point of a scale, for those who do not read: files beside the protocol, or
+    "faces" for faces from angry to happy."""
+
     optional: bool = False
     """Whether no answer is an answer."""
 
@@ -50,6 +57,10 @@ class Item:
         points = len(self.answers)
         if self.anchors and len(self.anchors) not in (2, points):
             raise AppError(f"the item '{self.name}' needs 2 anchors, or one for each point")
+        if self.pictures and (self.kind != "scale" or len(self.pictures) not in {1, points}):
+            raise AppError(f"the item '{self.name}' needs a picture for each point of its scale")
+        if len(self.pictures) == 1 < points and self.pictures != (FACES,):
+            raise AppError(f"the item '{self.name}' has 1 picture: give one for each, or '{FACES}'")
         if self.simulated and (len(self.simulated) != points or min(self.simulated) < 0):
             raise AppError(f"the item '{self.name}' has {points} answers: give a share of each")
 

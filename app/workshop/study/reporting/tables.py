@@ -41,6 +41,7 @@ COLUMNS: dict[str, dict[str, str]] = {
         "first_left": "Of a pair: 1 if its first member was on the left",
         "answer": "The number, the choice or the text; empty for no answer",
         "seconds": "How long it took [s]",
+        "onset_at": "Local time at which the stimulus was on the screen; empty outside a window",
         "at": "Local time of the answer, by ISO 8601",
     },
     "tasks": {
@@ -131,6 +132,7 @@ def _answer_row(step: PlannedStep, entry: Entry) -> Row:
         "first_left": step.first_left,
         "answer": entry.get("answer"),
         "seconds": entry.get("seconds"),
+        "onset_at": entry.get("onset_at"),
         "at": entry.get("at"),
     }
 
