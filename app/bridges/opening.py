@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cubeling.app.bridges.addresses import VMC_PORT, UdpAddress
@@ -13,6 +14,7 @@ from cubeling.app.errors import AppError
 
 if TYPE_CHECKING:
     from cubeling.app.running.instrument import Instrument
+    from cubeling.app.running.wizard.plan import WizardPlan
 
 LSL_SCOPES = ("machine", "link", "site")
 """Who finds our streams and whose streams we find, in LSL's words: this computer, its network, its
@@ -56,7 +58,15 @@ class InstrumentOptions:
     lsl_scope: str = LSL_SCOPES[0]
     """One of `LSL_SCOPES`."""
 
+    wizard: bool = False
+    """Whether to open a wizard's desk."""
+
+    wizard_file: Path | None = None
+    """The buttons of that desk; None for all that there are."""
+
     def __post_init__(self) -> None:
+        if self.wizard_file is not None and not self.wizard:
+            raise AppError("--wizard-file has the buttons of --wizard: give that too")
         for option, text, port in (
             ("--osc", self.osc, None),
             ("--osc-in", self.osc_in, None),
@@ -70,12 +80,12 @@ class InstrumentOptions:
 
 @contextmanager
 def open_instruments(
-    options: InstrumentOptions, say: Callable[[str], None]
+    options: InstrumentOptions, say: Callable[[str], None], plan: WizardPlan | None = None
 ) -> Iterator[tuple[Instrument, ...]]:
     """Open the instruments that are asked for, and close them at the end.
 
-    `say` is called with lines about them. Raises AppError if a library is missing, or an address
-    cannot be used.
+    `plan` has the buttons of a wizard's desk, unless the options name a file. `say` is called with
+    lines about them. Raises AppError if a library is missing, or an address cannot be used.
     """
     with ExitStack() as closing:
         opened: list[Instrument] = []
@@ -105,6 +115,16 @@ def open_instruments(
                 opened.append(closing.enter_context(LslOut()))
             if options.lsl_in is not None:
                 opened.append(closing.enter_context(LslIn(options.lsl_in, say)))
+        if options.wizard:
+            from cubeling.app.running.wizard.desk import WizardDesk
+            from cubeling.app.running.wizard.plan import read_wizard_plan
+            from cubeling.app.ui.local_pages import LocalPages
+
+            if options.wizard_file is not None:
+                plan = read_wizard_plan(options.wizard_file)
+            desk = WizardDesk(closing.enter_context(LocalPages()), plan)
+            say(f"The wizard's desk: {desk.address}")
+            opened.append(desk)
         yield tuple(opened)
 
 

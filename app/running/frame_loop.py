@@ -111,6 +111,9 @@ class FrameLoop:
         # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
         self.robot = view = session.robot_view()
         self._feel(step)
+        for act in inputs.acts:
+            if act.kind == "play":
+                session.robot.play(act.text)
         lap("robot")
         if session.recording is not None:
             session.recording.write(step, inputs)
@@ -141,6 +144,7 @@ class FrameLoop:
         cast = [each.character for each in session.playground.cast.members]
         taken = now + session.taken_from_timestamp
         for instrument in session.instruments:
+            instrument.robot = self.robot
             self._inputs = both_asked(self._inputs, instrument.follow(step, cast, taken))
         if session.instruments or session.recording is not None:
             for event in events_of(step, inputs):

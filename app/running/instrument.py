@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.characters import Character
 from cubeling.robot import Closeable
 
@@ -17,6 +17,9 @@ class Instrument(Closeable):
 
     speaks = False
     """Whether it may ask a character to say something."""
+
+    robot: RobotView | None = None
+    """The robot as it was with the last frame; None before the first."""
 
     def begin(self, cast: Sequence[Character]) -> None:
         """Prepare for the characters of a session that begins; raises one line for the user."""

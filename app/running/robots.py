@@ -113,6 +113,12 @@ class RobotLine(Closeable):
         if self._robot is not None:
             self._robot.express(target.emotion)
 
+    def play(self, name: str) -> None:
+        """Let the robot play a motion or sound once; one that it lacks is left out."""
+        if self._robot is not None:
+            with suppress(RobotError):
+                self._robot.play(name)
+
     def view(self) -> RobotView:
         """Return what the robot reports, or the requested emotion where there is no robot."""
         if self._robot is None:

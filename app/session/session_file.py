@@ -18,6 +18,7 @@ from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.spoken_line import Lines, SpokenLine
+from cubeling.app.session.acts import WizardAct, wizard_acts
 from cubeling.app.session.encoding import (
     APPEARANCE_TOPIC,
     CLOCK_RECORD,
@@ -245,6 +246,11 @@ class SessionFile:
         first = next(self.messages(IMAGE_TOPIC), ("", 0.0, b""))[1]
         marks = (*recorded_marks(self.events, first), *self.labels.marks)
         return tuple(sorted(marks, key=lambda mark: mark.at_s))
+
+    @property
+    def wizard_acts(self) -> tuple[WizardAct, ...]:
+        """What a wizard did, in the order of time; raises AppError."""
+        return wizard_acts(self.inputs, next(self.messages(IMAGE_TOPIC), ("", 0.0, b""))[1])
 
     @cached_property
     def inputs(self) -> dict[float, RecordedInputs]:

@@ -91,7 +91,7 @@ class LocalPages(Closeable):
 
     def _page_at(self, path: str, headers: Mapping[str, str]) -> tuple[LocalPage | None, str]:
         """Return the page of a path, and the place below it; None for who cannot know it."""
-        token, _, place = path.lstrip("/").partition("/")
+        token, _, place = path.partition("?")[0].lstrip("/").partition("/")
         # A page that is asked for by a name is that of somebody else's site (DNS rebinding).
         if headers.get("Host", "").rpartition(":")[0] not in (LOOPBACK, "localhost"):
             return None, ""

@@ -6,7 +6,8 @@ import functools
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -27,6 +28,7 @@ from cubeling.robot.network import DEFAULT_SITE
 
 if TYPE_CHECKING:
     from cubeling.app.running.instrument import Instrument
+    from cubeling.app.running.wizard.plan import WizardPlan
 
 INSTRUMENT_GROUP = "Other programs and instruments (see docs/instruments.md)"
 """Heading of these options in a help."""
@@ -74,6 +76,18 @@ INSTRUMENTS: Mapping[str, tuple[Any, Any]] = {
         _option(str, "--lsl-scope", f"How far LSL reaches: {', '.join(LSL_SCOPES)}."),
         LSL_SCOPES[0],
     ),
+    "wizard": (
+        _option(
+            bool,
+            "--wizard",
+            "Serve a page on this computer by which an experimenter drives character and robot.",
+        ),
+        False,
+    ),
+    "wizard_file": (
+        _option(Path | None, "--wizard-file", "The buttons of that page, in a .toml file."),
+        None,
+    ),
 }
 """The annotation and the default of each option, by the fields of `InstrumentOptions`."""
 
@@ -97,13 +111,17 @@ class GivenInstruments:
     """The values of `NETWORK`."""
 
     @contextmanager
-    def open(self) -> Iterator[tuple[Instrument, ...]]:
-        """Open what is asked for, and close it at the end; the errors are one line each."""
+    def open(self, plan: WizardPlan | None = None) -> Iterator[tuple[Instrument, ...]]:
+        """Open what is asked for, and close it at the end; the errors are one line each.
+
+        A plan has the buttons of a wizard's desk, which it opens.
+        """
         from cubeling.app.bridges.opening import open_instruments
 
+        options = replace(self.options, wizard=self.options.wizard or plan is not None)
         with (
             publisher(*self.network.values()) as players,
-            open_instruments(self.options, say) as others,
+            open_instruments(options, say, plan) as others,
         ):
             yield (*players, *others)
 

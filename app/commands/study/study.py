@@ -11,6 +11,7 @@ from rich.progress import Progress
 from rich.text import Text
 
 from cubeling.app.command_group import CommandGroup
+from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character
@@ -57,6 +58,7 @@ def new(
 
 
 @app.command()
+@with_instruments
 def run(
     protocol: Annotated[str, typer.Argument(help="A .toml file, or the name of a bundled one.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder of the study.")],
@@ -99,6 +101,8 @@ def run(
             rich_help_panel=PLAY_GROUP,
         ),
     ] = True,
+    *,
+    instruments: GivenInstruments,
 ) -> None:
     """Lead a participant through a study; who was interrupted goes on where they were.
 
@@ -136,10 +140,11 @@ def run(
     done = len(log.plan) - len(log.left)
     if done:
         console.print(Text(f"{participant} goes on after {quantity(done, 'step')}.", "dim"))
-    setup = TaskSetup(source, robot, pictures, intrinsics)
     place = "page" if page else "window" if window else "terminal"
     try:
         with ExitStack() as closing:
+            opened = closing.enter_context(instruments.open(loaded.wizard))
+            setup = TaskSetup(source, robot, pictures, intrinsics, opened)
             desk = _open_desk(place, loaded, setup, file, console, closing)
             run_participant(loaded, log, desk)
             desk.thank()

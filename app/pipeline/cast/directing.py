@@ -3,17 +3,24 @@
 from collections.abc import Collection
 from dataclasses import replace
 
+import numpy as np
+
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import EmotionTarget, Inputs, Outcome, Reply
-from cubeling.app.pipeline.table.acts import ACTION_S, MAX_SAID_CHARS, Act
+from cubeling.app.pipeline.table.acts import ACTION_S, MAX_PLACE_M, MAX_SAID_CHARS, Act
+from cubeling.app.pipeline.table.situation import PLAYER_POSITION
 from cubeling.characters import (
     ActionIntent,
     Character,
     CharacterError,
     GestureCalls,
+    LocomotionIntent,
     meanings_of,
 )
 from cubeling.characters.speech import TaggedText
+
+GOING_SPEED = 2.0
+"""AvatAR's Speed of a character that is sent somewhere: it walks."""
 
 
 class Directing:
@@ -23,7 +30,9 @@ class Directing:
         self._action: ActionIntent | None = None
         self._until = 0.0
         self._emotion: Emotion | None = None
+        self._place: tuple[float, float] | None = None
         self._said = ""
+        self._noted: dict[str, int] = {}  # the number of the last act of each kind
         self.take(character)
 
     def take(self, character: Character) -> None:
@@ -34,9 +43,12 @@ class Directing:
         """Return a decision with what the acts of its frame, and those before, ask for."""
         now = decision.command.timestamp
         if inputs.clear:
-            self._action = self._emotion = None
+            self._action = self._emotion = self._place = None
         for act in inputs.acts:
             self._begin(act, now)
+            if act.kind == "undo" and act.note is not None:
+                ended = self._undo(act.note.number)
+                decision = replace(decision, hush=decision.hush or ended == "say")
             if act.kind == "say":
                 decision = replace(decision, reply=Reply(act.text, ""), hush=True)
         if inputs.line is not None and inputs.line.utterance.text == self._said:
@@ -45,6 +57,10 @@ class Directing:
         if self._action is not None and now >= self._until:
             self._action = None
         command, behaviour = decision.command, self._gestures.intent(now)
+        if self._place is not None:
+            # The action of a scenario that only stands would keep it from going.
+            going = LocomotionIntent(GOING_SPEED, np.array(self._place), facing=PLAYER_POSITION)
+            command = replace(command, locomotion=going, action=None)
         if self._action is not None:
             command = replace(command, action=self._action)
             decision = replace(decision, icon=self._action.name)
@@ -64,8 +80,23 @@ class Directing:
             self._gestures.begin(act.text, now)
         elif act.kind == "say":
             self._said = TaggedText.read(act.text).text
-        else:
+        elif act.kind == "emotion":
             self._emotion = act.emotion
+        elif act.kind == "go":
+            self._place = act.place
+        if act.note is not None and act.kind not in ("undo", "cue"):
+            self._noted[act.kind] = act.note.number
+
+    def _undo(self, number: int) -> str:
+        """End what the act of a number still does, and return its kind; "" for nothing."""
+        kind = next((kind for kind, last in self._noted.items() if last == number), "")
+        if kind == "action":
+            self._action = None
+        elif kind == "emotion":
+            self._emotion = None
+        elif kind == "go":
+            self._place = None
+        return kind
 
 
 def refusal(act: Act, character: Character, actions: Collection[str]) -> str:
@@ -75,6 +106,8 @@ def refusal(act: Act, character: Character, actions: Collection[str]) -> str:
         return f"{character.name} has no action '{act.text:.40}'; its actions: {known}"
     if act.kind == "gesture" and not meanings_of(character, (act.text,)):
         return f"{character.name} has no gesture '{act.text:.40}'"
+    if act.kind == "go" and not all(abs(each) <= MAX_PLACE_M for each in act.place or ()):
+        return f"a place is at most {MAX_PLACE_M:g} m from the middle of the table"
     if act.kind == "say":
         try:
             TaggedText.read(act.text)

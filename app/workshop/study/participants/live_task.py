@@ -1,9 +1,11 @@
 """A task of a study, played in a session that is recorded, and judged by its channels."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cubeling.app.pipeline.step import Step
+from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
@@ -34,6 +36,8 @@ class TaskSetup:
     """Whether there is a window."""
 
     intrinsics: Path | None = None
+    instruments: tuple[Instrument, ...] = ()
+    """What else follows the tasks, such as a wizard's desk."""
 
 
 def play_step(
@@ -59,10 +63,12 @@ def play_step(
         participant=log.code,
         condition=condition,
     )
-    return play_task(options, task), record.name
+    return play_task(options, task, setup.instruments), record.name
 
 
-def play_task(options: SessionOptions, task: StudyTask) -> TaskResult:
+def play_task(
+    options: SessionOptions, task: StudyTask, instruments: Sequence[Instrument] = ()
+) -> TaskResult:
     """Play a task until its goal is reached, its time is up, or the participant ends it.
 
     The result is that of the recording, so that whoever reads it later finds the same.
@@ -82,7 +88,7 @@ def play_task(options: SessionOptions, task: StudyTask) -> TaskResult:
             raise _TaskOverError
 
     try:
-        with open_session(options) as session:
+        with open_session(options, instruments=instruments) as session:
             summary = run(session, follow)
         summary.check()
         if summary.interrupted:
@@ -97,7 +103,8 @@ def judge(session: Path, task: StudyTask) -> TaskResult:
     """Return how a task ended, by the channels of its recording; raises AppError."""
     kinds = {topic: MESSAGE_TYPES[topic] for topic in GOAL_TOPICS}
     with SessionFile(session) as file:
-        return result_of(task.goal, task.limit_s, file.decode_messages(kinds))
+        result = result_of(task.goal, task.limit_s, file.decode_messages(kinds))
+        return replace(result, acts=file.wizard_acts)
 
 
 def free_recording(folder: Path, task: StudyTask, condition: str) -> Path:

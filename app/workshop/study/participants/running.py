@@ -1,6 +1,7 @@
 """Leading a participant through a study: each step is kept before the next one begins."""
 
 from collections.abc import Callable
+from dataclasses import asdict
 from datetime import datetime
 from typing import Protocol as Interface
 
@@ -63,6 +64,8 @@ def run_participant(
                 "played_s": result.played_s,
                 "recording": recording,
             }
+            if result.acts:
+                found["acts"] = [asdict(each) for each in result.acts]
         else:
             questionnaire = protocol.questionnaires[step.questionnaire]
             item = next(each for each in questionnaire.item if each.name == step.item)

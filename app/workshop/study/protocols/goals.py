@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from cubeling.app.errors import AppError
+from cubeling.app.session import WizardAct
 
 Value = float | str | tuple[str, ...]
 
@@ -114,6 +115,9 @@ class TaskResult:
 
     played_s: float
     """How long it lasted [s]."""
+
+    acts: tuple[WizardAct, ...] = ()
+    """What a wizard did in it."""
 
 
 class GoalWatch:

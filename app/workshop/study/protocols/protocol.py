@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from cubeling.app.running.wizard.plan import WizardPlan
 from cubeling.app.workshop.study.protocols.goals import Goal
 from cubeling.app.workshop.study.protocols.questionnaires import Questionnaire
 
@@ -167,6 +168,9 @@ class Protocol:
     light_patch: bool = False
     """Whether a square in the corner of the window is white while a stimulus is shown, and else
     black: for a light sensor."""
+
+    wizard: WizardPlan | None = None
+    """The buttons of a wizard's desk; None for a study without one."""
 
     printed: str = ""
     """The module with printed tables and simulated participants, of `bundled`; "" for none."""

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from cubeling.affect import Personality
 from cubeling.app.errors import AppError
+from cubeling.app.running.wizard.plan import WizardPlan
 from cubeling.app.scenarios import check_scenario, find_scenario
 from cubeling.app.workshop.study.protocols.forms import questionnaire_of
 from cubeling.app.workshop.study.protocols.orders import MAX_CONDITIONS
@@ -59,7 +60,16 @@ KEYS = (
         "printed",
         "condition",
     ),
-    *("phase", "instruction", "task", "questionnaire", "stimuli", "resume", "preregistered"),
+    *(
+        "phase",
+        "instruction",
+        "task",
+        "questionnaire",
+        "stimuli",
+        "resume",
+        "preregistered",
+        "wizard",
+    ),
 )
 
 Named = TypeVar("Named", Instruction, StudyTask, Questionnaire, StimulusSet)
@@ -124,6 +134,7 @@ def _protocol(file: TomlTable, path: Path) -> Protocol:
             )
         ),
         file.truth("light_patch", False),
+        file.table("wizard").fill(WizardPlan) if "wizard" in file else None,
         file.line("printed", ""),
     )
     _check_whole(protocol, file)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cubeling.app.counted import quantity
 from cubeling.app.workshop.pages.box_plot import box_plot
 from cubeling.app.workshop.pages.page import heading, items, paragraph, table
 from cubeling.app.workshop.pages.report_table import (
@@ -57,6 +58,43 @@ def task_parts(data: StudyData) -> Iterator[str]:
         yield table(ReportTable("Reached", ("condition", "reached", "95 % interval"), tuple(lines)))
         times = _per_condition(own, "time_s")
         yield from _compared(data, f"Time to the goal [s]: {name}", times, "time [s]", (0.0, None))
+
+
+def wizard_parts(data: StudyData) -> Iterator[str]:
+    """Yield what a wizard did: how much, how late, and how often in error."""
+    rows = data.tables["acts"]
+    if not rows:
+        return
+    yield heading("The wizard")
+    yield paragraph(
+        f"{quantity(len(rows), 'act')}, of which {sum(row['undone'] for row in rows)} were taken "
+        "back as errors. Delays are from the cue to the act at the desk, without errors."
+    )
+    lines = []
+    for task, own in _by(rows, "task").items():
+        for condition, acts in _by(own, "condition").items():
+            errors = sum(row["undone"] for row in acts)
+            low, high = share_interval(errors, len(acts))
+            late = [
+                row["delay_s"] for row in acts if row["delay_s"] is not None and not row["undone"]
+            ]
+            delays = ["–"] * 3
+            if late:
+                found = describe(late)
+                delays = [figure(found.mean), figure(found.deviation), figure(max(late))]
+            lines.append(
+                (
+                    *(task, _condition(condition), f"{len(acts)}", f"{errors}"),
+                    f"{percent(errors / len(acts), 0)} [{percent(low, 0)}, {percent(high, 0)}]",
+                    *(f"{len(late)}", *delays),
+                )
+            )
+    columns = (
+        *("task", "condition", "acts", "errors", "share of errors, 95 % interval"),
+        *("after a cue", "mean delay [s]", "SD", "longest"),
+    )
+    note = "Acts of one wizard are not independent: the intervals are too narrow."
+    yield table(ReportTable("Acts of the wizard", columns, tuple(lines), note))
 
 
 def scale_parts(data: StudyData) -> Iterator[str]:

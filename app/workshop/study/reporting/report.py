@@ -6,7 +6,12 @@ from importlib import import_module, metadata
 
 from cubeling.app.workshop.pages.page import heading, items, page, paragraph, table
 from cubeling.app.workshop.pages.report_table import ReportTable
-from cubeling.app.workshop.study.reporting.measures import scale_parts, stimulus_parts, task_parts
+from cubeling.app.workshop.study.reporting.measures import (
+    scale_parts,
+    stimulus_parts,
+    task_parts,
+    wizard_parts,
+)
 from cubeling.app.workshop.study.reporting.tables import StudyData
 
 KIND_WORDS = {
@@ -65,6 +70,7 @@ def _parts(data: StudyData, changed: bool) -> Iterator[str]:
         for each in (*module.printed_tables(), *module.own_tables(data)):
             yield table(each)
     yield from task_parts(data)
+    yield from wizard_parts(data)
     yield from scale_parts(data)
     yield from stimulus_parts(data)
     yield heading("How it was made")

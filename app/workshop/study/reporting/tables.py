@@ -58,6 +58,20 @@ COLUMNS: dict[str, dict[str, str]] = {
         "limit_s": "The limit [s]",
         "recording": "File of the session in the participant's folder; empty for simulated ones",
     },
+    "acts": {
+        "participant": "Code of the participant",
+        "kind": "study, pilot or simulated",
+        "condition": "The condition; empty for none",
+        "phase": "The phase of the protocol",
+        "task": "The task in which a wizard acted",
+        "number": "Number of the act in its session, from 1",
+        "at_s": "Time of the frame in which it began, from the first frame [s]",
+        "act": "say, action, gesture, emotion, go (somewhere), play (by the robot)",
+        "name": "What was done",
+        "cue": "The cue that it answers; empty for none",
+        "delay_s": "Time from the cue to the act at the desk [s]; empty without a cue",
+        "undone": "1 if the wizard took it back as an error",
+    },
     "scores": {
         "participant": "Code of the participant",
         "kind": "study, pilot or simulated",
@@ -116,6 +130,7 @@ def gather(protocol: Protocol, kind: str, people: Sequence[Participant]) -> Stud
             {**who, **_task_row(protocol, place, step, entry)}
             for place, (step, entry) in enumerate(played, 1)
         ]
+        tables["acts"] += [{**who, **row} for each in played for row in _act_rows(*each)]
         tables["scores"] += [{**who, **row} for row in _score_rows(protocol, done)]
     return StudyData(protocol, kind, tuple(people), tables)
 
@@ -149,6 +164,13 @@ def _task_row(protocol: Protocol, place: int, step: PlannedStep, entry: Entry) -
         "limit_s": task.limit_s,
         "recording": entry.get("recording"),
     }
+
+
+def _act_rows(step: PlannedStep, entry: Entry) -> Iterator[Row]:
+    place = {"condition": step.condition, "phase": step.phase, "task": step.part}
+    for act in entry.get("acts", ()):
+        names = ("number", "at_s", "name", "cue", "delay_s", "undone")
+        yield {**place, "act": act.get("kind"), **{name: act.get(name) for name in names}}
 
 
 def _score_rows(protocol: Protocol, done: list[tuple[PlannedStep, Entry]]) -> Iterator[Row]:
