@@ -11,6 +11,7 @@ from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.pipeline.table.props import Thing
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.pipeline.table.spoken_line import LEAD, Lines, SpokenLine
+from cubeling.app.pipeline.table.stage_sounds import PlayedSound, SoundClip, SoundSource
 from cubeling.characters import Character, CharacterCommand, RootDelta, meanings_of
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel
@@ -49,6 +50,9 @@ class Inputs:
     marks: tuple[str, ...] = ()
     """Names of the marks that others set in this frame, see `Mark.of`: they are recorded as events,
     as those of the player are."""
+
+    sounds: Mapping[str, SoundClip] = field(default_factory=dict)
+    """Sounds that the scenario has asked for, by their names; see `Outcome.asked_sounds`."""
 
     @property
     def lines(self) -> Lines:
@@ -126,6 +130,12 @@ class Outcome:
 
     hush: bool = False
     """Whether what is being said, or was to be said, is cut off now."""
+
+    asked_sounds: tuple[str, ...] = ()
+    """Names of sounds of a `SoundingScenario` that it lacks: a later frame has them."""
+
+    sounds: tuple[PlayedSound, ...] = ()
+    """Sounds that go on now, besides those of the characters."""
 
 
 @dataclass(frozen=True)
@@ -209,6 +219,14 @@ class ListeningScenario(Protocol):
 
     listens: bool
     """Whether what is typed now is for it."""
+
+
+@runtime_checkable
+class SoundingScenario(Protocol):
+    """A scenario that plays sounds of its own."""
+
+    sounds: Mapping[str, SoundSource]
+    """Where they come from, by their names. A replay has them in the recording."""
 
 
 @runtime_checkable

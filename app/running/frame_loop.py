@@ -18,7 +18,7 @@ def both_asked(first: Inputs, then: Inputs) -> Inputs:
 
     >>> both_asked(Inputs(clear=True, inside=True), Inputs(scenario="reach", inside=True))
     Inputs(clear=True, scenario='reach', line=None, inside=False, typed='', hush=False, \
-lines_of_others={}, acts=(), marks=())
+lines_of_others={}, acts=(), marks=(), sounds={})
     """
     both = Inputs(
         clear=first.clear or then.clear,
@@ -28,6 +28,7 @@ lines_of_others={}, acts=(), marks=())
         hush=first.hush or then.hush,
         acts=(*first.acts, *then.acts),
         marks=(*first.marks, *then.marks),
+        sounds={**first.sounds, **then.sounds},
     )
     return both.with_lines({**first.lines, **then.lines})
 
@@ -41,6 +42,7 @@ class FrameLoop:
         self._recorded = Inputs()
         self._index = 0
         self._replay: ReplayInputs | None = None
+        self._asked_sounds: tuple[str, ...] = ()
         self._hidden: Step | None = None
         self._shown_index = 0
         self.robot = RobotView("none", 0.0, "")
@@ -58,7 +60,10 @@ class FrameLoop:
         session, lap = self._session, self._session.monitor.times.lap
         self._read_recorded(frame)
         recorded = self._take_recorded()
-        inputs = both_asked(Inputs() if recorded.clear else self._inputs, recorded)
+        answered = Inputs(sounds=session.sounds_of(self._asked_sounds))
+        inputs = both_asked(
+            both_asked(Inputs() if recorded.clear else self._inputs, answered), recorded
+        )
         inputs = session.admit(inputs)
         session.change_scenario(inputs.scenario)
         if session.recording is not None:
@@ -126,6 +131,7 @@ class FrameLoop:
         if drawn:
             self._inputs = both_asked(self._inputs, session.screen.show(step, view))
         session.speaker.hear(step)
+        self._asked_sounds = step.outcome.asked_sounds
         lap("showing")
         if session.sound is not None:
             if not follows:

@@ -1,6 +1,6 @@
 """What is opened for a session, and what may be exchanged in it while it runs."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ from cubeling.app.pipeline.other_cube import cube_for
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs, ListeningScenario
 from cubeling.app.pipeline.step import ReplayInputs, RobotView
+from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.instrument import Instrument
@@ -70,6 +71,9 @@ class OpenedSession:
 
     speaker: Speaker
     """What the character speaks with."""
+
+    stage_sounds: Mapping[str, SoundClip]
+    """Sounds of the scenario by their names; none in a replay, which has them recorded."""
 
     robot: RobotLine
     """The robot that shows the emotions, or a stand-in."""
@@ -170,9 +174,14 @@ class OpenedSession:
 
     def recorded_inputs(self, timestamp: float) -> Inputs:
         """Return what is spoken from the frame of a timestamp on [s], and asked for in a replay."""
-        kept = None if self.replayed is None else self.replayed.inputs.get(timestamp)
-        asked = Inputs() if kept is None else kept.asked
+        asked, replayed = Inputs(), self.replayed
+        if replayed is not None and (kept := replayed.inputs.get(timestamp)) is not None:
+            asked = replace(kept.asked, sounds=replayed.stage_sounds.get(timestamp, {}))
         return asked.with_lines(self.speaker.lines(timestamp))
+
+    def sounds_of(self, names: Sequence[str]) -> dict[str, SoundClip]:
+        """Return sounds of the scenario that it has asked for by their names."""
+        return {name: self.stage_sounds[name] for name in names if name in self.stage_sounds}
 
     @property
     def listens(self) -> bool:

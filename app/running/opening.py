@@ -12,7 +12,13 @@ from cubeling.app.errors import AppError
 from cubeling.app.output_path import default_folder
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.pipeline.scenario import CastScenario, ListeningScenario, NamingScenario
+from cubeling.app.pipeline.scenario import (
+    CastScenario,
+    ListeningScenario,
+    NamingScenario,
+    SoundingScenario,
+)
+from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.front_end import FrontEnd
@@ -210,6 +216,11 @@ def open_session(
             prompted=any(each.speaks for each in instruments),
         )
         closing.callback(speaker.close)
+        stage_sounds: dict[str, SoundClip] = {}
+        if isinstance(scenario, SoundingScenario) and not is_replay(replayed, options):
+            from cubeling.app.sound.stage_sounds import open_clips
+
+            stage_sounds = open_clips(scenario.sounds)
         recording = None
         if options.record is not None:
             from cubeling.app.running.recording import SessionRecording
@@ -244,6 +255,7 @@ def open_session(
             screen=screen,
             sound=sound,
             speaker=speaker,
+            stage_sounds=stage_sounds,
             robot=robot,
             second_robot=second,
             wire=wire,

@@ -9,7 +9,13 @@ from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from cubeling.app.errors import AppError
-from cubeling.app.session.encoding import IMAGE_TOPIC, INPUTS_TOPIC, LINE_TOPIC, encode
+from cubeling.app.session.encoding import (
+    IMAGE_TOPIC,
+    INPUTS_TOPIC,
+    LINE_TOPIC,
+    encode,
+    sound_topic,
+)
 from cubeling.app.session.file_start import open_session_file
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.app.session.recorder import CHUNK_BYTES, json_schema
@@ -17,7 +23,7 @@ from cubeling.app.session.session_file import SessionFile
 from cubeling.files import whole_file
 
 INPUT_TOPICS = (IMAGE_TOPIC, "/camera/calibration", INPUTS_TOPIC, LINE_TOPIC, "/events")
-"""The channels of what came in, besides the sound of what further characters say."""
+"""The channels of what came in, besides the sounds of further characters and of the scenario."""
 
 Change = Callable[[str, float, bytes], bytes | None]
 """Takes a message's topic, its time [s] and its bytes; returns those to write, or None to drop."""
@@ -35,7 +41,8 @@ def keep_inputs(session: Path, path: Path) -> None:
 
 
 def _came_in(topic: str) -> bool:
-    return topic in INPUT_TOPICS or (topic.startswith("/cast/") and topic.endswith("/line"))
+    said = topic.startswith("/cast/") and topic.endswith("/line")
+    return topic in INPUT_TOPICS or said or topic.startswith(sound_topic(""))
 
 
 def copy_session(

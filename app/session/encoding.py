@@ -52,6 +52,15 @@ def line_topic(name: str) -> str:
     return f"/cast/{name}/line" if name else LINE_TOPIC
 
 
+def sound_topic(name: str) -> str:
+    """Return the channel of a sound that a scenario plays, by its name.
+
+    >>> sound_topic("wind.ogg")
+    '/audio/sounds/wind.ogg'
+    """
+    return f"/audio/sounds/{name}"
+
+
 MAX_MASK_PX = 1 << 24
 """Most pixels of a mask in a message; that of a hand is smaller than the camera's picture."""
 

@@ -47,6 +47,9 @@ class RecordedInputs:
     acts: tuple[Act, ...] = ()
     """What the characters were told to do by somebody beside the player."""
 
+    sounds: tuple[str, ...] = ()
+    """Names of the sounds that came for the scenario; each is on its channel of `sound_topic`."""
+
     @property
     def asked(self) -> Inputs:
         """What was asked for and said, without what was spoken."""
@@ -79,4 +82,5 @@ class RecordedInputs:
             inputs.typed,
             inputs.hush,
             inputs.acts,
+            tuple(inputs.sounds),
         )

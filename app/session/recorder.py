@@ -23,6 +23,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Step
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.session.encoding import (
     CLOCK_RECORD,
     CLOCK_ZERO,
@@ -38,6 +39,7 @@ from cubeling.app.session.encoding import (
     line_topic,
     message_type,
     schema,
+    sound_topic,
 )
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.robot import Closeable
@@ -156,7 +158,9 @@ class Recorder(Closeable):
         self._frame(step.frame)
         came_in = None if inputs is None else RecordedInputs.of(inputs, now)
         for name, line in () if inputs is None else inputs.lines.items():
-            self._line(line_topic(name), line, now)
+            self._sound(line_topic(name), line, now)
+        for name, clip in () if inputs is None else inputs.sounds.items():
+            self._sound(sound_topic(name), clip, now)
         if came_in is not None:
             self._json(INPUTS_TOPIC, partial(encode, came_in), now)
         for topic, message in step.messages().items():
@@ -270,11 +274,11 @@ class Recorder(Closeable):
         message.timestamp.FromNanoseconds(nanoseconds_of(frame.timestamp))
         self._protobuf(IMAGE_TOPIC, message, frame.timestamp)
 
-    def _line(self, topic: str, line: SpokenLine, timestamp: float) -> None:
+    def _sound(self, topic: str, sound: SpokenLine | SoundClip, timestamp: float) -> None:
         message = RawAudio(
-            data=encode_sound(line.samples),
+            data=encode_sound(sound.samples),
             format="pcm-s16",
-            sample_rate=line.rate,
+            sample_rate=sound.rate,
             number_of_channels=1,
         )
         message.timestamp.FromNanoseconds(nanoseconds_of(timestamp))

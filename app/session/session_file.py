@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from functools import cached_property
@@ -18,6 +18,7 @@ from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.spoken_line import Lines, SpokenLine
+from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.session.acts import WizardAct, wizard_acts
 from cubeling.app.session.encoding import (
     APPEARANCE_TOPIC,
@@ -35,6 +36,7 @@ from cubeling.app.session.encoding import (
     decode_sound_message,
     line_topic,
     message_type,
+    sound_topic,
 )
 from cubeling.app.session.file_records import READ_ERRORS, is_whole, metadata_of
 from cubeling.app.session.file_start import open_session_file
@@ -49,6 +51,7 @@ from cubeling.app.session.labels import (
 )
 from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
 from cubeling.characters import CharacterCommand, SpeechIntent
+from cubeling.characters.speech import Samples
 
 START_OVER_EVENT = "start over"
 """Event of a player who starts over."""
@@ -296,15 +299,41 @@ class SessionFile:
             for name, speech in each.speeches.items()
         }
         lines: dict[float, dict[str, SpokenLine]] = {}
-        topics = dict.fromkeys(topic for topic, _ in said)
-        for topic, time, data in self.messages(*topics) if said else ():
-            if (topic, time) in said:
-                name, speech = said[topic, time]
+        for at, rate, sound in self._sounds_at(said):
+            name, speech = said[at]
+            line = SpokenLine(speech.utterance, sound, rate, speech.profile)
+            lines.setdefault(at[1], {})[name] = line
+        return dict(lines)
+
+    @cached_property
+    def stage_sounds(self) -> dict[float, dict[str, SoundClip]]:
+        """The sounds that came for the scenario, by frame [s] and name: a replay needs no file.
+
+        Raises
+        ------
+        AppError
+            A message is not what a recorder writes.
+        """
+        came = {
+            (sound_topic(name), time): name
+            for time, each in self.inputs.items()
+            for name in each.sounds
+        }
+        clips: dict[float, dict[str, SoundClip]] = {}
+        for at, rate, sound in self._sounds_at(came):
+            clips.setdefault(at[1], {})[came[at]] = SoundClip(sound, rate)
+        return clips
+
+    def _sounds_at(
+        self, places: Collection[tuple[str, float]]
+    ) -> Iterator[tuple[tuple[str, float], int, Samples]]:
+        """Yield place, sample rate and sound of the messages at some (topic, time [s])."""
+        topics = dict.fromkeys(topic for topic, _ in places)
+        for topic, time, data in self.messages(*topics) if topics else ():
+            if (topic, time) in places:
                 with self._named_message(topic, time):
                     rate, sound = decode_sound_message(data)
-                line = SpokenLine(speech.utterance, sound, rate, speech.profile)
-                lines.setdefault(time, {})[name] = line
-        return dict(lines)
+                yield (topic, time), rate, sound
 
     def replay_inputs(self, start: str) -> Iterator[ReplayInputs]:
         """Yield the recorded messages up to the stage `start`, for each frame.

@@ -1,6 +1,7 @@
 """A scenario that is a play: one for each of the cast, which share where it is."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -14,6 +15,7 @@ from cubeling.app.pipeline.scenario import (
     ScenarioSettings,
 )
 from cubeling.app.pipeline.table.situation import PLAYER_POSITION, Situation
+from cubeling.app.pipeline.table.stage_sounds import SoundSource
 from cubeling.app.scenarios.dialogue.scenario import DialogueScenario, dialogue_scenario
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
@@ -56,6 +58,9 @@ class ShowScenario:
     gestures: ClassVar[Mapping[str, str]]
     """See `GesturingScenario`."""
 
+    sounds: ClassVar[Mapping[str, SoundSource]]
+    """See `SoundingScenario`."""
+
     dialogue: ClassVar[type[DialogueScenario] | None]
     """What takes over; None for nothing."""
 
@@ -96,8 +101,16 @@ class ShowScenario:
 
     def update(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
-        now, visible = controls.timestamp, self._presence.update(controls)
         stage = self._stage
+        stage.clips.update(inputs.sounds)
+        outcome = self._decide(controls, situation, inputs)
+        if self._who:
+            return outcome
+        missing = tuple(name for name in self.sounds if name not in stage.clips)
+        return replace(outcome, asked_sounds=missing, sounds=stage.sounds(controls.timestamp))
+
+    def _decide(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
+        now, visible, stage = controls.timestamp, self._presence.update(controls), self._stage
         if self._who == 0:
             if inputs.clear:
                 self._begin_again()
@@ -170,6 +183,7 @@ def show_scenario(path: str | Path) -> type[ShowScenario]:
         "script": script,
         "asked": asked,
         "gestures": gestures,
+        "sounds": script.sounds,
         "dialogue": dialogue_scenario(script.talk) if script.talk else None,
         "listens": bool(script.talk),
         "name": str(path),

@@ -6,6 +6,7 @@
       <say who="creon" id="first">Who is there?</say>
       <wait for="first" before="0.5"/>
       <do who="antigone" id="nods" for="2">nod</do>
+      <sound id="rain" play="rain.ogg" volume="0.5"/>
       <wait seconds="1"/>
       <stop what="nods" fade="0.5"/>
       <talk script="creon.xml"/>
@@ -23,11 +24,15 @@ from pathlib import Path
 from cubeling.affect import OCC_FACES
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import MAX_CAST
+from cubeling.app.pipeline.table.stage_sounds import SoundSource
 from cubeling.characters import CharacterError
 from cubeling.characters.behaviour import XmlElement, XmlLimits, read_xml
 from cubeling.characters.speech import TaggedText
 from cubeling.files import FileKind
 from cubeling.toml_file import printable
+
+OWN_SOUNDS = ("wind", "gong")
+"""Sounds that need no file: `cubeling.app.sound.stage_sounds` synthesises them."""
 
 LIMITS = XmlLimits(bytes=1 << 20, elements=20_000, depth=4)
 """How large a play may be."""
@@ -60,7 +65,7 @@ class ShowCue:
     """Something that is carried out when its turn comes."""
 
     kind: str
-    """"say", "do", "stop", "feel", "wait" or "talk"."""
+    """One of `CUES`."""
 
     line: int
     """Line of the file."""
@@ -72,13 +77,14 @@ class ShowCue:
     """By what name other cues call it; "" for none."""
 
     text: str = ""
-    """What is said, the action, the emotion, what is waited for or stopped, or the script."""
+    """What is said, the action, the emotion, what is waited for or stopped, the sound, or the
+    script."""
 
     seconds: float = 0.0
     """How long: of an action, a fade, a wait; or how long before the end a wait is over [s]."""
 
     value: float = 0.0
-    """How strongly an emotion is felt, 0…1."""
+    """How strongly an emotion is felt, or how loud a sound is, 0…1."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +93,9 @@ class ShowScript:
 
     name: str
     """The file, for messages."""
+
+    folder: Path
+    """Where what it names is."""
 
     summary: str
     """What it is, in one line."""
@@ -104,6 +113,17 @@ class ShowScript:
     def talk(self) -> str:
         """The script of the dialogue that takes over; "" for none."""
         return next((cue.text for cue in self.cues if cue.kind == "talk"), "")
+
+    @property
+    def sounds(self) -> dict[str, SoundSource]:
+        """Where its sounds come from, by how it names them."""
+        return {
+            cue.text: SoundSource(
+                self.folder / cue.text if Path(cue.text).suffix else None, self.place(cue.line)
+            )
+            for cue in self.cues
+            if cue.kind == "sound"
+        }
 
     def place(self, line: int) -> str:
         """Return how messages name a line of it."""
@@ -148,6 +168,7 @@ class _Reader:
             raise self._error(root, "a show without a cue")
         return ShowScript(
             self._name,
+            self._folder,
             " ".join(root.attributes.get("summary", "a show").split()).removesuffix("."),
             root.attributes.get("language", "en"),
             tuple(self._cast.values()),
@@ -177,7 +198,8 @@ class _Reader:
         usual = USUAL_ACTING_S if tag == "do" else 0.0
         keys = {"do": "for", "stop": "fade", "wait": "seconds" if not text else "before"}
         seconds = self._seconds(element, keys.get(tag, ""), usual, MAX_SECONDS)
-        value = self._seconds(element, "value" if tag == "feel" else "", 1.0, 1.0)
+        values = {"feel": "value", "sound": "volume"}
+        value = self._seconds(element, values.get(tag, ""), 1.0, 1.0)
         if tag == "wait" and not text and not seconds:
             raise self._error(element, 'a wait needs seconds="2", or for="ID" before="0.5"')
         return ShowCue(tag, element.line, who, name, text, seconds, value)
@@ -197,13 +219,20 @@ class _Reader:
                 known = ", ".join(OCC_FACES)
                 raise self._error(element, f"'{emotion:.40}' is none of the emotions {known}")
             return emotion
+        if tag == "sound":
+            sound = self._needs(element, "play")
+            if not Path(sound).suffix and sound not in OWN_SOUNDS:
+                known = ", ".join(OWN_SOUNDS)
+                raise self._error(element, f"'{sound:.40}' is no file, and none of {known}")
+            return sound
         if tag == "talk":
             return str(self._folder / self._needs(element, "script"))
         named = element.attributes.get("for" if tag == "wait" else "what", "")
         if named and named not in self._ids:
             raise self._error(element, f"no cue before it has the id '{named:.40}'")
-        if tag == "stop" and self._ids.get(named) not in ("do", "say"):
-            raise self._error(element, "what is stopped? name the id of a <say> or a <do>")
+        if tag == "stop" and self._ids.get(named) not in LASTING:
+            known = ", ".join(f"<{each}>" for each in LASTING)
+            raise self._error(element, f"what is stopped? name the id of one of {known}")
         return named
 
     def _number_of(self, element: XmlElement) -> int:
@@ -247,11 +276,15 @@ CUES: dict[str, tuple[str, ...]] = {
     "say": ("who", "id"),
     "do": ("who", "id", "for"),
     "stop": ("what", "fade"),
+    "sound": ("id", "play", "volume"),
     "feel": ("who", "emotion", "value"),
     "wait": ("for", "before", "seconds"),
     "talk": ("script",),
 }
 """The cues by their element, with their attributes."""
+
+LASTING = ("say", "do", "sound")
+"""Cues that take their time, and may be cut off."""
 
 
 def _tag(element: XmlElement) -> str:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from cubeling.app.pipeline.table.stage_sounds import PlayedSound, SoundClip
 from cubeling.app.show.script import ShowCue, ShowScript
 
 MAX_WAIT_S = 6.0
@@ -55,6 +56,9 @@ class StageState:
     talks: bool = False
     """Whether the dialogue has taken over."""
 
+    clips: dict[str, SoundClip] = field(default_factory=dict)
+    """Its sounds that have come, by their names."""
+
     comes_back: bool = False
     """Whether the play goes on after it."""
 
@@ -71,15 +75,22 @@ class StageState:
             self.next, self.since = self.next + 1, now
 
     def _is_due(self, cue: ShowCue, now: float) -> bool:
+        if cue.kind == "sound":  # one that never comes is left out
+            return cue.text in self.clips or self.waited(now) > MAX_WAIT_S
         if cue.kind != "wait":
             return True
         if not cue.text:
-            return self.since is not None and now - self.since >= cue.seconds
-        return now >= self.named(cue.text).end - cue.seconds
+            return self.waited(now) >= cue.seconds
+        awaited = self.named(cue.text)
+        return awaited is None or now >= awaited.end - cue.seconds
 
-    def named(self, name: str) -> OngoingCue:
-        """Return what was begun by the cue of an id."""
-        return next(each for each in self.ongoing.values() if each.cue.id == name)
+    def waited(self, now: float) -> float:
+        """Return how long ago the last cue was carried out [s]."""
+        return 0.0 if self.since is None else now - self.since
+
+    def named(self, name: str) -> OngoingCue | None:
+        """Return what was begun by the cue of an id; None for a sound that never came."""
+        return next((each for each in self.ongoing.values() if each.cue.id == name), None)
 
     def begin(self, cue: ShowCue, now: float) -> None:
         """Begin something; when it is over is not known of what is said."""
@@ -87,10 +98,30 @@ class StageState:
         self.ongoing[self.next] = OngoingCue(cue, now, end)
         self.orders.setdefault(cue.who, []).append(cue)
 
+    def play(self, cue: ShowCue, now: float) -> None:
+        """Begin a sound."""
+        if cue.text in self.clips:
+            end = now + self.clips[cue.text].duration
+            self.ongoing[self.next] = OngoingCue(cue, now, end)
+
+    def sounds(self, now: float) -> tuple[PlayedSound, ...]:
+        """Return the sounds that go on at a time [s]."""
+        return tuple(
+            PlayedSound(
+                f"{number}@{each.since:.3f}",
+                self.clips[each.cue.text],
+                each.since,
+                each.cue.value,
+                each.end if each.fades_s else math.inf,
+            )
+            for number, each in self.ongoing.items()
+            if each.cue.kind == "sound" and now < each.end
+        )
+
     def stop(self, cue: ShowCue, now: float) -> None:
         """Cut something off, with a fade."""
         stopped = self.named(cue.text)
-        if now < stopped.end:
+        if stopped is not None and now < stopped.end:
             stopped.end = min(stopped.end, now + cue.seconds)
             stopped.fades_s = stopped.end - now
             self.orders.setdefault(stopped.cue.who, []).append(cue)
@@ -128,12 +159,14 @@ class StageState:
         """Go on with the play at a time [s], with the cue that comes next."""
         self.talks, self.since = False, now
         for each in self.ongoing.values():
-            each.end = min(each.end, now)
+            if each.cue.kind != "sound":
+                each.end = min(each.end, now)
 
 
 HANDLERS: dict[str, Callable[[StageState, ShowCue, float], None]] = {
     "say": StageState.begin,
     "do": StageState.begin,
+    "sound": StageState.play,
     "stop": StageState.stop,
     "feel": StageState.order,
     "wait": lambda state, cue, now: None,

@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 
 from cubeling.app.errors import AppError
-from cubeling.app.sound.sounds import SOUNDS
+from cubeling.app.sound.sounds import SOUNDS, Sound
 from cubeling.app.sound.synthesis import SAMPLE_RATE, Array, with_level
 from cubeling.files import whole_file
 
@@ -62,7 +62,7 @@ class SoundBank:
     def variants(self, name: str) -> list[Array]:
         """Return the variants of a sound; none for an unknown name."""
         if name not in self._variants:
-            self._variants[name] = synthesise(name) if name in SOUNDS else []
+            self._variants[name] = synthesise(SOUNDS[name], name) if name in SOUNDS else []
         return self._variants[name]
 
     def prepare(self) -> None:
@@ -71,13 +71,12 @@ class SoundBank:
             self.variants(name)
 
 
-def synthesise(name: str) -> list[Array]:
-    """Return the variants of one of `SOUNDS`: always the same."""
-    sound = SOUNDS[name]
+def synthesise(sound: Sound, name: str, count: int = VARIANT_COUNT) -> list[Array]:
+    """Return variants of a sound, such as one of `SOUNDS`, with its name: always the same."""
     seed = zlib.crc32(name.encode())
     return [
         with_level(sound.make(np.random.default_rng([seed, variant])), sound.level)
-        for variant in range(VARIANT_COUNT)
+        for variant in range(count)
     ]
 
 

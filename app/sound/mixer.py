@@ -13,8 +13,11 @@ from cubeling.app.sound.synthesis import SAMPLE_RATE, Array
 MAX_SOUNDS = 24
 """Sounds that play at one time, and cues that wait; the oldest give way to newer ones."""
 
-FADE_OUT = SAMPLE_RATE // 50
-"""Samples over which a voice fades that is cut off."""
+USUAL_FADE_S = 0.02
+"""Time in which a sound fades that is cut off [s]."""
+
+FADE_OUT = round(USUAL_FADE_S * SAMPLE_RATE)
+"""Samples of that."""
 
 KNEE, CEILING = 0.6, 0.95
 """Amplitudes up to the first are kept; greater ones are bent to stay below the second."""
@@ -50,8 +53,8 @@ class Mixer:
         self.volume = volume
         self._waiting: deque[Cue] = deque(maxlen=MAX_SOUNDS)
         self._playing: deque[_Playing] = deque(maxlen=MAX_SOUNDS)
-        self._speech: _Playing | None = None
-        self._next_speech: _Playing | None = None
+        self._keyed: dict[str, _Playing] = {}
+        self._next: dict[str, tuple[_Playing, int]] = {}
 
     def start(self, cue: Cue) -> None:
         """Let a sound begin with the next block."""
@@ -62,18 +65,29 @@ class Mixer:
 
         `samples` are at `SAMPLE_RATE`, (n,); without any, it falls silent. What is cut off fades.
         """
-        self._next_speech = _Playing(samples, _gains(pan))
+        self.play("voice", samples, pan)
+
+    def play(
+        self, key: str, samples: Array, pan: float = 0.0, fade_s: float = USUAL_FADE_S
+    ) -> None:
+        """Let a sound be heard from the next block on, instead of the one with the same key.
+
+        That one fades out in `fade_s`; without samples there is silence after it.
+        """
+        self._next[key] = _Playing(samples, _gains(pan)), max(round(fade_s * SAMPLE_RATE), 1)
 
     def render(self, count: int) -> NDArray[np.float32]:
         """Return the next samples, (count, 2)."""
         while self._waiting:
             self._begin(self._waiting.popleft())
-        self._change_speech()
+        while self._next:
+            self._exchange(*self._next.popitem())
         block = np.zeros((count, 2))
         for sound in self._playing:
             part, sound.samples = sound.samples[:count], sound.samples[count:]
             block[: len(part)] += part[:, None] * sound.gains
         self._playing = deque((s for s in self._playing if len(s.samples)), MAX_SOUNDS)
+        self._keyed = {key: sound for key, sound in self._keyed.items() if len(sound.samples)}
         return (self.volume * limit(block)).astype(np.float32)
 
     def _begin(self, cue: Cue) -> None:
@@ -86,16 +100,16 @@ class Mixer:
             samples = np.interp(wanted, np.arange(len(samples)), samples)
         self._playing.append(_Playing(samples, cue.gain * _gains(cue.pan)))
 
-    def _change_speech(self) -> None:
-        """Begin the next speech, if there is one, and let the present one fade out."""
-        following, self._next_speech = self._next_speech, None
-        if following is None:
-            return
-        if self._speech is not None:
-            fade = self._speech.samples[:FADE_OUT]
-            self._speech.samples = fade * np.linspace(1.0, 0.0, len(fade))
-        self._speech = following
-        self._playing.append(following)
+    def _exchange(self, key: str, change: tuple[_Playing, int]) -> None:
+        """Begin a sound, and let the one with its key fade out over a number of samples."""
+        following, count = change
+        if key in self._keyed:
+            playing = self._keyed.pop(key)
+            fade = playing.samples[:count]
+            playing.samples = fade * np.linspace(1.0, 0.0, count)[: len(fade)]
+        if len(following.samples):
+            self._keyed[key] = following
+            self._playing.append(following)
 
 
 def _gains(pan: float) -> Array:

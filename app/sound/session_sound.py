@@ -1,12 +1,13 @@
 """What is heard of a session, on a loudspeaker or in a video."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Protocol
 
 import numpy as np
 
 from cubeling.app.pipeline.step import Step, speech_start
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.pipeline.table.stage_sounds import PlayedSound, SoundClip
 from cubeling.app.sound.cues import SoundCues, pan_of
 from cubeling.app.sound.loudspeaker import Loudspeaker
 from cubeling.app.sound.mixer import Mixer
@@ -66,6 +67,7 @@ class SessionSound:
         self._character: Character | None = None
         self._cues: SoundCues | None = None
         self._line: SpokenLine | None = None
+        self._stage: dict[str, PlayedSound] = {}
         self.muted = muted
 
     @property
@@ -92,10 +94,24 @@ class SessionSound:
         cues = self._cues.update(step, started_over)
         unheard = self._loudspeaker is not None and not self._loudspeaker.playing
         if self._muted or unheard:
+            self._play_stage((), step.frame.timestamp)
             return
         for cue in cues:
             self.mixer.start(cue)
         self._speak(step)
+        self._play_stage(step.outcome.sounds, step.frame.timestamp)
+
+    def _play_stage(self, sounds: Iterable[PlayedSound], now: float) -> None:
+        """Let the scenario's own sounds be heard as they are at a time [s]: also from within."""
+        playing, self._stage = self._stage, {each.key: each for each in sounds}
+        for key in playing.keys() - self._stage.keys():
+            self.mixer.play(key, np.zeros(0))
+        for key, sound in self._stage.items():
+            if key not in playing:
+                late = max(round((now - sound.start) * SAMPLE_RATE), 0)
+                self.mixer.play(key, sound.volume * at_sample_rate(sound.clip)[late:])
+            elif sound.silent_at < playing[key].silent_at:
+                self.mixer.play(key, np.zeros(0), fade_s=sound.silent_at - now)
 
     def _speak(self, step: Step) -> None:
         """Let who speaks say its line, from where it is; silence if nobody does.
@@ -116,6 +132,7 @@ class SessionSound:
         """Forget the steps so far: the next one does not follow them, as after a seek."""
         self._cues, self._line = None, None
         self.mixer.say(np.zeros(0))
+        self._play_stage((), 0.0)
 
     def close(self) -> None:
         """Fall silent; a second call does nothing."""
@@ -123,6 +140,6 @@ class SessionSound:
             self._loudspeaker.close()
 
 
-def at_sample_rate(line: SpokenLine) -> Array:
-    """Return the sound of a line at `SAMPLE_RATE`, (n,)."""
-    return np.asarray(resample(line.samples, line.rate, SAMPLE_RATE), float)
+def at_sample_rate(sound: SpokenLine | SoundClip) -> Array:
+    """Return a sound at `SAMPLE_RATE`, (n,)."""
+    return np.asarray(resample(sound.samples, sound.rate, SAMPLE_RATE), float)

@@ -204,7 +204,10 @@ WRONG = {
     "no cue": ("", ":1: a show without a cue"),
     "nobody": ('<say who="c">Hi</say>', ":2: nobody is called 'c': a, b"),
     "no text": ('<say who="a"> </say>', ":2: <say> needs a text"),
-    "unknown cue": ("<fly/>", ":2: <fly> is no cue; there are say, do, stop, feel, wait, talk"),
+    "unknown cue": (
+        "<fly/>",
+        ":2: <fly> is no cue; there are say, do, stop, sound, feel, wait, talk",
+    ),
     "unknown attribute": ('<do who="a" at="3">wave</do>', ":2: <do> has no 'at'"),
     "unknown id": ('<wait for="x"/>', ":2: no cue before it has the id 'x'"),
     "an endless wait": ("<wait/>", ":2: a wait needs seconds="),
@@ -213,6 +216,7 @@ WRONG = {
         '<do who="a" id="x">wave</do>\n<do who="b" id="x">wave</do>',
         ":3: a second id 'x'",
     ),
+    "unknown sound": ('<sound play="rain"/>', ":2: 'rain' is no file, and none of wind, gong"),
     "a number": ('<wait seconds="-1"/>', ":2: seconds='-1' is no number"),
     "emotion": ('<feel who="a" emotion="envy"/>', ":2: 'envy' is none of the emotions"),
     "a gesture without an end": (

@@ -48,7 +48,7 @@ def test_variants_differ_and_are_the_same_every_time(bank, name):
     assert len(variants) == VARIANT_COUNT
     assert len({variant.tobytes() for variant in variants}) == VARIANT_COUNT
     if name in ("step", "happy"):
-        for made, again in zip(variants, synthesise(name), strict=True):
+        for made, again in zip(variants, synthesise(SOUNDS[name], name), strict=True):
             np.testing.assert_array_equal(made, again)
 
 
