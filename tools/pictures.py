@@ -16,7 +16,7 @@ import numpy as np
 from rich.console import Console
 
 from cubeling.app.behaving.opening import open_lines
-from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
+from cubeling.app.behaving.player import BehaviourPlayer
 from cubeling.app.behaving.recording import record_behaviour
 from cubeling.app.commands.study.mood import plot
 from cubeling.app.pipeline.playground import Playground
@@ -26,6 +26,7 @@ from cubeling.app.running.opening import intrinsics_for, open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.bundled import bundled_session
+from cubeling.app.show.blocks import BehaviourOptions
 from cubeling.app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from cubeling.app.ui.calibration.coach_lines import write_coverage
 from cubeling.app.ui.calibration.session import Advice, CalibrationSession, Picture

@@ -176,7 +176,7 @@ def play_live(
     clock
         The time [s].
     """
-    player.prepare()
+    player.director.prepare()
     player.settle(SETTLE_S, rate)
     with often_switching():
         _play_frames(player, server, output, rate, clock)
@@ -198,7 +198,7 @@ def _play_frames(
             document = server.next_document(due - clock(), left)
             if document is None:
                 break
-            player.play_block(document)
+            player.director.accept(document)
             left = MAX_FRAME_BYTES if left == math.inf else left - len(document)
         time.sleep(max(due - clock(), 0.0))
         now = clock() - begin

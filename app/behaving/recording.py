@@ -105,15 +105,15 @@ def record_behaviour(
     speeches: dict[str, SpokenPart] = {}
     end = math.inf
     while (now := len(frames) / rate) < min(end, LONGEST_S):
-        if waiting and (together or player.over(now)):
+        if waiting and (together or player.director.over(now)):
             count = len(waiting) if together else 1
             for document in waiting[:count]:
-                player.play_block(document)
+                player.director.accept(document)
             del waiting[:count]
         frame = player.update(now)
         frames.append(frame)
         _hear(player, frame, speeches)
-        if waiting or not player.over(now):
+        if waiting or not player.director.over(now):
             end = math.inf
         elif end == math.inf:
             end = now + TAIL_S

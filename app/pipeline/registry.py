@@ -55,6 +55,9 @@ SCRIPT_SUFFIX = ".xml"
 SHOW_SUFFIX = ".show"
 """Ending of a scenario that is a play: see `cubeling.app.show`."""
 
+BLOCK_SUFFIXES = (".bml", ".fml")
+"""Endings of a scenario that is a block, which one character performs: see the same."""
+
 _RULES = "cubeling.app.scenarios.rules"
 _SHOW = "cubeling.app.show"
 _DIALOGUE = "cubeling.app.scenarios.dialogue.scenario:dialogue_scenario"
@@ -62,7 +65,7 @@ CHECKS = Registry[Callable[[str], "Any"]](
     {
         RULES_SUFFIX: f"{_RULES}.file:read_rules",
         SCRIPT_SUFFIX: _DIALOGUE,
-        SHOW_SUFFIX: f"{_SHOW}.script:read_show",
+        **dict.fromkeys((SHOW_SUFFIX, *BLOCK_SUFFIXES), f"{_SHOW}.script:read_show"),
     }
 )
 """What reads a file that is a scenario, by its suffix, to refuse what cannot be played."""
@@ -71,7 +74,7 @@ FILES = Registry[Callable[[str], "Any"]](
     {
         RULES_SUFFIX: f"{_RULES}.scenario:rules_scenario",
         SCRIPT_SUFFIX: _DIALOGUE,
-        SHOW_SUFFIX: f"{_SHOW}.scenario:show_scenario",
+        **dict.fromkeys((SHOW_SUFFIX, *BLOCK_SUFFIXES), f"{_SHOW}.scenario:show_scenario"),
     }
 )
 """What makes a scenario of it; that of rules loads numpy."""

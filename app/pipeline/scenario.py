@@ -131,6 +131,12 @@ class Outcome:
     hush: bool = False
     """Whether what is being said, or was to be said, is cut off now."""
 
+    keeps_line: bool = False
+    """Whether the line that came with this frame is kept, to begin when `line` gives it."""
+
+    line: SpokenLine | None = None
+    """What it begins to say now, of the lines that were kept; None for nothing new."""
+
     asked_sounds: tuple[str, ...] = ()
     """Names of sounds of a `SoundingScenario` that it lacks: a later frame has them."""
 
@@ -219,6 +225,14 @@ class ListeningScenario(Protocol):
 
     listens: bool
     """Whether what is typed now is for it."""
+
+
+@runtime_checkable
+class PreparingScenario(Protocol):
+    """A scenario that asks for lines before their time."""
+
+    prepares: bool
+    """Whether the next line that comes is for later, so that it waits for nobody's turn."""
 
 
 @runtime_checkable

@@ -20,6 +20,7 @@ from cubeling.app.scenarios.dialogue.scenario import DialogueScenario, dialogue_
 from cubeling.app.scenarios.mood import MoodController
 from cubeling.app.scenarios.presence import Presence
 from cubeling.app.scenarios.rules.scenario import HOME
+from cubeling.app.show.block_player import BlockPlayer
 from cubeling.app.show.script import ShowCue, ShowScript, read_show
 from cubeling.app.show.stage_state import StageState
 from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent, RootDelta
@@ -90,8 +91,16 @@ class ShowScenario:
         self._presence = Presence()
         self._mood = MoodController(Personality.load(self.personality))
         self._saying: ShowCue | None = None
+        self._spoken = True
+        self._blocks: BlockPlayer | None = None
+        self._coming: list[ShowCue] = []
         self._talk: DialogueScenario | None = None
         self._talked_at = 0.0
+
+    @property
+    def prepares(self) -> bool:
+        """See `PreparingScenario`."""
+        return self._blocks is not None and self._blocks.lines.waits
 
     def scenario_of(self, number: int, place: RootDelta) -> Scenario | None:
         """Return what one of the others plays; see `CastDirector`."""
@@ -111,6 +120,8 @@ class ShowScenario:
 
     def _decide(self, controls: CubeControls, situation: Situation, inputs: Inputs) -> Outcome:
         now, visible, stage = controls.timestamp, self._presence.update(controls), self._stage
+        if inputs.clear:
+            self._saying, self._blocks, self._coming = None, None, []
         if self._who == 0:
             if inputs.clear:
                 self._begin_again()
@@ -120,15 +131,18 @@ class ShowScenario:
                 stage.advance(now)
         if stage.talks and self._who == 0 and self.dialogue is not None:
             self._talk = self._talk or self.dialogue(self._cube, self._settings)
+            self._blocks = None
             outcome = self._talk.update(controls, situation, inputs)
             if inputs.typed or inputs.hush or outcome.reply is not None or outcome.icon == "talk":
                 self._talked_at = now
             if stage.comes_back and now - self._talked_at > BACK_S:
                 stage.come_back(now)
             return outcome
-        if self._saying is not None and inputs.line is not None:
-            stage.spoken(self._saying, now + inputs.line.utterance.duration)
-        return self._carry_out(controls, inputs, visible)
+        if self._saying is not None and inputs.line is not None and not self.prepares:
+            stage.expect(self._saying, now + inputs.line.utterance.duration)
+            self._spoken = True
+        outcome = self._carry_out(controls, inputs, visible)
+        return self._with_blocks(outcome, situation, inputs)
 
     def _begin_again(self) -> None:
         stage = self._stage
@@ -142,12 +156,17 @@ class ShowScenario:
         influences = []
         for cue in self._stage.take_orders(self._who):
             if cue.kind == "say":
-                self._saying, hush = cue, True
+                self._saying, self._spoken, hush = cue, False, True
                 reply = Reply(cue.text, self.script.language)
             elif cue.kind == "feel":
                 influences.append((cue.text, cue.value))
-            elif self._saying is not None and self._saying.id == cue.text:  # it is cut off
-                self._saying, hush = None, True
+            elif cue.kind == "bml":
+                self._coming.append(cue)
+            elif cue.kind == "stop":
+                if self._saying is not None and self._saying.id == cue.text:
+                    self._saying, self._spoken, hush = None, True, True
+                if self._blocks is not None:
+                    self._blocks.stop(cue.text)
         acting = self._stage.acting(self._who, now)
         action = "idle" if acting is None else acting.cue.text
         # A fade leads from all of an action to the least of it.
@@ -164,6 +183,24 @@ class ShowScenario:
         hint = self.script.summary if controls.visible else "Show me the cube"
         events = (OVER_EVENT,) if self._stage.is_over(now) else ()
         return Outcome(command, emotion, hint, action, events=events, reply=reply, hush=hush)
+
+    def _with_blocks(self, outcome: Outcome, situation: Situation, inputs: Inputs) -> Outcome:
+        """Return a decision with what the blocks add, from the frame on that shows the body."""
+        body = situation.body
+        if self._coming and body is not None:
+            if self._blocks is None or self._blocks.character is not body.character:
+                self._blocks = BlockPlayer(body.character, self.script.language)
+            for cue in self._coming:
+                self._blocks.begin(cue)
+            self._coming = []
+        if self._blocks is None:
+            return outcome
+        if outcome.reply is not None:
+            self._blocks.lines.give_way()
+        outcome = self._blocks.update(outcome, situation, inputs.line, self._stage)
+        if outcome.reply is None and self._spoken:
+            outcome = replace(outcome, reply=self._blocks.lines.next_reply())
+        return outcome
 
 
 def show_scenario(path: str | Path) -> type[ShowScenario]:

@@ -7,6 +7,7 @@
       <wait for="first" before="0.5"/>
       <do who="antigone" id="nods" for="2">nod</do>
       <sound id="rain" play="rain.ogg" volume="0.5"/>
+      <bml who="antigone" file="bow.bml"/>
       <wait seconds="1"/>
       <stop what="nods" fade="0.5"/>
       <talk script="creon.xml"/>
@@ -24,7 +25,9 @@ from pathlib import Path
 from cubeling.affect import OCC_FACES
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import MAX_CAST
+from cubeling.app.pipeline.registry import BLOCK_SUFFIXES
 from cubeling.app.pipeline.table.stage_sounds import SoundSource
+from cubeling.app.show.blocks import block_of, document_of, read_document
 from cubeling.characters import CharacterError
 from cubeling.characters.behaviour import XmlElement, XmlLimits, read_xml
 from cubeling.characters.speech import TaggedText
@@ -34,7 +37,7 @@ from cubeling.toml_file import printable
 OWN_SOUNDS = ("wind", "gong")
 """Sounds that need no file: `cubeling.app.sound.stage_sounds` synthesises them."""
 
-LIMITS = XmlLimits(bytes=1 << 20, elements=20_000, depth=4)
+LIMITS = XmlLimits(bytes=1 << 20, elements=20_000, depth=24)
 """How large a play may be."""
 
 SHOW_FILE = FileKind(
@@ -77,8 +80,8 @@ class ShowCue:
     """By what name other cues call it; "" for none."""
 
     text: str = ""
-    """What is said, the action, the emotion, what is waited for or stopped, the sound, or the
-    script."""
+    """What is said, the action, the emotion, what is waited for or stopped, the sound, the script,
+    or the document of BML or FML."""
 
     seconds: float = 0.0
     """How long: of an action, a fade, a wait; or how long before the end a wait is over [s]."""
@@ -131,18 +134,35 @@ class ShowScript:
 
 
 def read_show(path: str | Path) -> ShowScript:
-    """Read a play.
+    """Read a play; a document of BML or FML is one with a single character and cue.
 
     Raises
     ------
     AppError
         It cannot be read, or in one line: what is wrong at which line of it.
     """
+    if Path(path).suffix in BLOCK_SUFFIXES:
+        return _show_of_blocks(Path(path))
     reader = _Reader(printable(str(path)), Path(path).parent)
     try:
         return reader.show(SHOW_FILE.read(path))
     except CharacterError as error:
         raise AppError(str(error)) from None
+
+
+def _show_of_blocks(path: Path) -> ShowScript:
+    try:
+        document = read_document(path).decode()
+    except (CharacterError, UnicodeDecodeError) as error:
+        raise AppError(printable(str(error))) from None
+    return ShowScript(
+        printable(str(path)),
+        path.parent,
+        f"A character performs {printable(path.name)}",
+        "en",
+        (ShowCharacter("human", "human"),),
+        (ShowCue("bml", 1, id=path.stem, text=document),),
+    )
 
 
 class _Reader:
@@ -185,7 +205,8 @@ class _Reader:
 
     def _cue(self, element: XmlElement) -> ShowCue:
         tag = element.tag
-        self._expect(element, tag, CUES[tag])
+        if tag != "bml":  # its attributes are those of BML, too
+            self._expect(element, tag, CUES[tag])
         if not self._cast:
             raise self._error(element, "a cue before the first <character>")
         text = self._text(element)
@@ -225,6 +246,8 @@ class _Reader:
                 known = ", ".join(OWN_SOUNDS)
                 raise self._error(element, f"'{sound:.40}' is no file, and none of {known}")
             return sound
+        if tag == "bml":
+            return self._block(element)
         if tag == "talk":
             return str(self._folder / self._needs(element, "script"))
         named = element.attributes.get("for" if tag == "wait" else "what", "")
@@ -234,6 +257,17 @@ class _Reader:
             known = ", ".join(f"<{each}>" for each in LASTING)
             raise self._error(element, f"what is stopped? name the id of one of {known}")
         return named
+
+    def _block(self, element: XmlElement) -> str:
+        try:
+            if "file" in element.attributes:
+                self._expect(element, "bml", CUES["bml"])
+                return read_document(self._folder / element.attributes["file"]).decode()
+            document = document_of(element)
+            block_of(document)
+        except (CharacterError, UnicodeDecodeError) as error:
+            raise self._error(element, str(error)) from None
+        return document
 
     def _number_of(self, element: XmlElement) -> int:
         name = self._needs(element, "who")
@@ -276,6 +310,7 @@ CUES: dict[str, tuple[str, ...]] = {
     "say": ("who", "id"),
     "do": ("who", "id", "for"),
     "stop": ("what", "fade"),
+    "bml": ("who", "id", "file"),
     "sound": ("id", "play", "volume"),
     "feel": ("who", "emotion", "value"),
     "wait": ("for", "before", "seconds"),
@@ -283,7 +318,7 @@ CUES: dict[str, tuple[str, ...]] = {
 }
 """The cues by their element, with their attributes."""
 
-LASTING = ("say", "do", "sound")
+LASTING = ("say", "do", "bml", "sound")
 """Cues that take their time, and may be cut off."""
 
 

@@ -94,12 +94,12 @@ class StageState:
 
     def begin(self, cue: ShowCue, now: float) -> None:
         """Begin something; when it is over is not known of what is said."""
-        end = math.inf if cue.kind == "say" else now + cue.seconds
+        end = now + cue.seconds if cue.kind == "do" else math.inf
         self.ongoing[self.next] = OngoingCue(cue, now, end)
         self.orders.setdefault(cue.who, []).append(cue)
 
     def play(self, cue: ShowCue, now: float) -> None:
-        """Begin a sound."""
+        """Begin a sound; one that has not come is left out."""
         if cue.text in self.clips:
             end = now + self.clips[cue.text].duration
             self.ongoing[self.next] = OngoingCue(cue, now, end)
@@ -123,7 +123,7 @@ class StageState:
         stopped = self.named(cue.text)
         if stopped is not None and now < stopped.end:
             stopped.end = min(stopped.end, now + cue.seconds)
-            stopped.fades_s = stopped.end - now
+            stopped.fades_s = max(stopped.end - now, 1e-9)
             self.orders.setdefault(stopped.cue.who, []).append(cue)
 
     def order(self, cue: ShowCue, now: float) -> None:
@@ -134,10 +134,11 @@ class StageState:
         """Return the cues that a character has not seen yet."""
         return self.orders.pop(who, [])
 
-    def spoken(self, cue: ShowCue, end: float) -> None:
-        """Note when the line of a cue is over [s]."""
+    def expect(self, cue: ShowCue, end: float) -> None:
+        """Note when what a cue began is over, as far as is known [s], unless it was cut off."""
         for each in self.ongoing.values():
-            if each.cue is cue and each.end == math.inf:
+            known = each.end < math.inf and cue.kind == "say"
+            if each.cue is cue and not known and not each.fades_s:
                 each.end = end
 
     def acting(self, who: int, now: float) -> OngoingCue | None:
@@ -166,6 +167,7 @@ class StageState:
 HANDLERS: dict[str, Callable[[StageState, ShowCue, float], None]] = {
     "say": StageState.begin,
     "do": StageState.begin,
+    "bml": StageState.begin,
     "sound": StageState.play,
     "stop": StageState.stop,
     "feel": StageState.order,

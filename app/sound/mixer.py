@@ -17,7 +17,7 @@ USUAL_FADE_S = 0.02
 """Time in which a sound fades that is cut off [s]."""
 
 FADE_OUT = round(USUAL_FADE_S * SAMPLE_RATE)
-"""Samples of that."""
+"""How many samples `USUAL_FADE_S` has."""
 
 KNEE, CEILING = 0.6, 0.95
 """Amplitudes up to the first are kept; greater ones are bent to stay below the second."""

@@ -29,14 +29,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.behaving.player import (
-    BehaviourOptions,
-    BehaviourPlayer,
-    block_of,
-    command_of,
-    place_unknown,
-)
+from cubeling.app.behaving.player import BehaviourPlayer
 from cubeling.app.behaving.voice import SilentSource
+from cubeling.app.show.blocks import BehaviourOptions, block_of, command_of, place_unknown
 from cubeling.characters import Animator, Character, CharacterError, PosedCharacter, RootDelta
 from cubeling.characters.behaviour import Block, BmlWarning, CharacterRealizer, RealizedFrame
 from cubeling.characters.behaviour.bml import BMLA
@@ -96,7 +91,7 @@ def report_of(path: Path, body: Character) -> Report:
         report.refused = str(error)
         return report
     player = BehaviourPlayer(body, SilentSource("no voice"), BehaviourOptions())
-    player.realizer.accept(_at_once(document, player))
+    player.director.realizer.accept(_at_once(document, player))
     frame = player.update(0.0)
     warnings = [each for each in frame.feedback if isinstance(each, BmlWarning)]
     lines: dict[int, list[str]] = {}
@@ -108,7 +103,7 @@ def report_of(path: Path, body: Character) -> Report:
             lines.setdefault(int(found[1]), []).append(found[2])
             left_out = _DROPPED.match(found[2])
             dropped += int(left_out[1] or 1) if left_out else 0
-    scheduled = player.realizer.scheduled
+    scheduled = player.director.realizer.scheduled
     shown = {each.behaviour.line for each in scheduled if _is_visible(each, player, body)}
     meant = replace(meant, behaviours=tuple(b for b in meant.behaviours if b.namespace != BMLA))
     wanted = [each.line for each in meant.behaviours]
@@ -126,7 +121,7 @@ def report_of(path: Path, body: Character) -> Report:
 def _at_once(document: bytes, player: BehaviourPlayer) -> Block:
     """Return a block as a player reads it, which does not wait to be activated."""
     block = block_of(document)
-    notes = (*block.notes, *place_unknown(block, player.who.surroundings))
+    notes = (*block.notes, *place_unknown(block, player.director.who.surroundings))
     return replace(block, notes=notes, preplan=False)
 
 
@@ -134,15 +129,15 @@ def _is_visible(scheduled: Scheduled, player: BehaviourPlayer, body: Character) 
     """Return whether a behaviour alone changes what is seen, on against off."""
     if scheduled.behaviour.kind == "speech":
         return bool(scheduled.behaviour.text.strip())
-    realizer = CharacterRealizer(player.who)
+    realizer = CharacterRealizer(player.director.who)
     on, off = (Animator(body, place=RootDelta()) for _ in range(2))
     end = min(scheduled.end, scheduled.start + MOST_S)
     now = scheduled.start - SETTLE_S
     while now < end + 0.2:
         active = [scheduled] if scheduled.start <= now < scheduled.end else []
         shown = realizer.frame_of(active, now)
-        with_it = on.update(command_of(shown, None, player.who))
-        without = off.update(command_of(RealizedFrame(now), None, player.who))
+        with_it = on.update(command_of(shown, None, player.director.who))
+        without = off.update(command_of(RealizedFrame(now), None, player.director.who))
         if _differ(with_it, without):
             return True
         now += 1.0 / RATE

@@ -23,9 +23,10 @@ from rich.progress import track
 
 from cubeling.app.behaving.camera import FollowingCamera
 from cubeling.app.behaving.opening import open_lines
-from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
+from cubeling.app.behaving.player import BehaviourPlayer
 from cubeling.app.behaving.recording import BehaviourRecording, placed_pose, record_behaviour
 from cubeling.app.behaving.voice import LineSource, SilentSource
+from cubeling.app.show.blocks import BehaviourOptions
 from cubeling.app.sound import SAMPLE_RATE
 from cubeling.app.speaking.speech_video import sound_blocks
 from cubeling.app.speaking.view import View

@@ -25,8 +25,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
+from cubeling.app.behaving.player import BehaviourPlayer
 from cubeling.app.behaving.voice import SilentSource
+from cubeling.app.show.blocks import BehaviourOptions
 from cubeling.characters import Character
 from cubeling.characters.behaviour import (
     GestureCollection,
@@ -82,7 +83,7 @@ def play(
     """Return how a gesture is performed; `inner` and `outer` are added to its element."""
     player = BehaviourPlayer(body, SilentSource("no voice"), BehaviourOptions())
     player.settle(0.3, rate)
-    player.play_block(
+    player.director.accept(
         '<bml id="b" xmlns="http://www.bml-initiative.org/bml/bml-1.0" '
         'xmlns:c="urn:cubeling:behaviour">'
         f'<gesture id="g" lexeme="{gesture.name}" {outer}>{inner}</gesture></bml>'

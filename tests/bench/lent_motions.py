@@ -171,12 +171,12 @@ def perform(name: str, character: Character) -> Take:
         player = BehaviourPlayer(body, lines)
         player.settle(2.0, RATE_HZ)
         for caption, behaviour in SCENES:
-            player.play_block(_block(caption, behaviour))
+            player.director.accept(_block(caption, behaviour))
             while True:
                 now = len(frames) / RATE_HZ
                 frames.append(player.update(now).posed)
                 captions.append(caption)
-                if player.over(now) or now > LONGEST_S:
+                if player.director.over(now) or now > LONGEST_S:
                     break
     finally:
         lines.close()

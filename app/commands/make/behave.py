@@ -24,8 +24,8 @@ from cubeling.files import write_whole
 
 if TYPE_CHECKING:
     from cubeling.app.behaving.live import Output
-    from cubeling.app.behaving.player import BehaviourOptions
     from cubeling.app.behaving.recording import BehaviourRecording
+    from cubeling.app.show.blocks import BehaviourOptions
     from cubeling.characters import Character
     from cubeling.characters.behaviour import Feedback
 
@@ -128,9 +128,10 @@ def behave(
     places = _targets(target or [])
     check_character(character)
     # Nothing above needs more than numpy: what is misspelt is refused before the rest is loaded.
-    from cubeling.app.behaving.opening import open_lines, read_document
-    from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
+    from cubeling.app.behaving.opening import open_lines
+    from cubeling.app.behaving.player import BehaviourPlayer
     from cubeling.app.behaving.recording import record_behaviour
+    from cubeling.app.show.blocks import BehaviourOptions, read_document
     from cubeling.characters import load_to_play
     from cubeling.characters.behaviour import GestureExpressivity
     from cubeling.characters.model import with_root_joint
@@ -188,7 +189,7 @@ def _serve(
         closing.callback(lines.close)
         player = BehaviourPlayer(body, lines, options)
         for document in first:
-            player.play_block(document)
+            player.director.accept(document)
         output: Output = NoOutput()
         if shown is not None:
             output = closing.enter_context(WindowOutput.open(body, *shown))
@@ -265,7 +266,7 @@ def _report(console: Console, path: Path, done: BehaviourRecording, problem: str
 
 
 def _targets(texts: list[str]) -> dict[str, Any]:
-    from cubeling.app.behaving.player import target_of
+    from cubeling.app.show.blocks import target_of
 
     try:
         return dict(map(target_of, texts))

@@ -19,7 +19,7 @@ from cubeling.app.commands.play.play_options import (
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.registry import SHOW_SUFFIX
+from cubeling.app.pipeline.registry import BLOCK_SUFFIXES, SHOW_SUFFIX
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
 
@@ -31,7 +31,7 @@ BUNDLED_PLAYS = ("antigone",)
 @with_instruments
 def show(
     play: Annotated[
-        str, typer.Argument(help="A .show file, see docs/talking.md; or antigone.")
+        str, typer.Argument(help="A .show file, see docs/shows.md, or .bml; or antigone.")
     ] = BUNDLED_PLAYS[0],
     source: SourceOption = DEFAULT_CAMERA,
     language: Annotated[str | None, typer.Option(help="none to show it without a sound.")] = None,
@@ -52,8 +52,8 @@ def show(
     Example: cubeling show antigone -o antigone.mp4
     """
     path = str(_bundled(play)) if play in BUNDLED_PLAYS else play
-    if not path.endswith(SHOW_SUFFIX):
-        raise AppError(f"'{play}' is no play: give a .show file, see docs/talking.md")
+    if not path.endswith((SHOW_SUFFIX, *BLOCK_SUFFIXES)):
+        raise AppError(f"'{play}' is no play: give a .show file, see docs/shows.md")
     check_scenario(path)
     from cubeling.app.running.option_checks import check_inputs, check_output_paths
     from cubeling.app.session import SessionOptions

@@ -7,7 +7,7 @@ from dataclasses import replace
 from cubeling.app.pipeline.cast.directing import refusal
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.cast.turns import Turns
-from cubeling.app.pipeline.scenario import Inputs, Outcome
+from cubeling.app.pipeline.scenario import Inputs, Outcome, PreparingScenario
 from cubeling.app.pipeline.step import Performance, ReplayInputs
 from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.pipeline.table.attention import ALONE, Company
@@ -42,11 +42,17 @@ class Cast:
         ends = [each.speaking.end for each in self.members]
         over = (at for at, end in enumerate(ends) if self._now < end <= now)
         self._heard, self._now = next(over, None), now
-        turn = self._turns.update(now, (inputs.line, *others), ends)
+        lines = (inputs.line, *others)
+        early = [_prepares(each) for each in self.members]
+        wanted = [None if kept else line for line, kept in zip(lines, early, strict=True)]
+        turn = self._turns.update(now, wanted, ends)
         for number in turn.interrupted:
             self.members[number].speaking.stop()
         silent = replace(inputs, line=None, lines_of_others={}, acts=())
-        told = [silent] * len(self.members)
+        told = [
+            replace(silent, line=line if kept else None)
+            for line, kept in zip(lines, early, strict=True)
+        ]
         if turn.begins is not None:
             told[turn.begins] = replace(silent, line=turn.line)
         for number, member in enumerate(self.members if inputs.acts else ()):
@@ -122,3 +128,8 @@ class Cast:
             None if last is None else last.face,
             waits=self._turns.waits(number),
         )
+
+
+def _prepares(member: CastMember) -> bool:
+    scenario = member.scenario
+    return isinstance(scenario, PreparingScenario) and scenario.prepares

@@ -147,7 +147,9 @@ class CastMember:
             gaze=self.attention.update(seen.state, seen.controls, command, company),
             emotion=decision.emotion.emotion,
             speech=self.speaking.update(
-                inputs.line, command, silence=inputs.clear or decision.hush
+                decision.line if decision.keeps_line else decision.line or inputs.line,
+                command,
+                silence=inputs.clear or decision.hush,
             ),
         )
 

@@ -42,7 +42,7 @@ class PlayedSound:
     """Tells it from the others, and from the same one played again."""
 
     clip: SoundClip
-    """What is played."""
+    """Its samples, from its beginning."""
 
     start: float
     """When it began [s]."""

@@ -94,6 +94,19 @@ class Realizer:
             for scheduled in realization.behaviours()
         )
 
+    def end_of(self, block: str) -> float | None:
+        """Return when nothing more happens in a block by itself, as far as is known [s].
+
+        Infinite before it starts; None if it is over or unknown.
+        """
+        if any(isinstance(each, Block) and each.id == block for each in self._arrived):
+            return math.inf
+        realization = self._realizations.get(block)
+        if realization is None or not math.isfinite(realization.start):
+            return None if realization is None else math.inf
+        times = [time for track in realization.tracks.values() for time in track.times]
+        return max(time for time in (realization.start, *times) if math.isfinite(time))
+
     @property
     def idle(self) -> bool:
         """Whether nothing goes on or waits for its turn; blocks to be activated do not count."""

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cubeling.app.behaving.opening import read_document
-from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
+from cubeling.app.behaving.player import BehaviourPlayer
 from cubeling.app.behaving.voice import PatientSource
+from cubeling.app.show.blocks import BehaviourOptions, read_document
 from cubeling.characters import CharacterError
 from cubeling.characters.behaviour import BmlWarning
 from tests.app.behaving.players import HUMAN, speech_of
@@ -25,7 +25,7 @@ def beat(*numbers):
     """Return where the right hand is during a beat with these parameters, (frames, 3)."""
     inside = "".join(f"<{name}.value>{value}</{name}.value>" for name, value in numbers)
     player = BehaviourPlayer(HUMAN, PatientSource(speech_of, "en"))
-    player.play_block(
+    player.director.accept(
         '<bml><gesture id="g" lexeme="Beat_Pos_B_Social" start="0.2">'
         f'<description type="gretabml">{inside}</description></gesture></bml>'
     )
@@ -45,7 +45,7 @@ def test_spatial_extent_and_tempo_of_greta_change_how_a_hand_goes():
 
 def test_an_act_is_performed_and_what_is_not_is_warned_about_by_its_line():
     player = BehaviourPlayer(HUMAN, PatientSource(speech_of, "en"))
-    player.play_block(ACT)
+    player.director.accept(ACT)
     frames = [player.update(number / RATE) for number in range(2 * RATE)]
     realized = [frame.realized for frame in frames]
     assert any(each.gestures and each.gestures[0].gesture.name == "BEAT_BOTH" for each in realized)
@@ -70,7 +70,7 @@ def test_strictly_the_same_file_is_refused(tmp_path):
     with pytest.raises(CharacterError, match=r"act\.xml: BML, line \d: not XML"):
         read_document(path, strict=True)
     player = BehaviourPlayer(HUMAN, PatientSource(speech_of, "en"), BehaviourOptions(strict=True))
-    player.play_block(ACT)
+    player.director.accept(ACT)
     (warning,) = player.update(0.0).feedback
     assert isinstance(warning, BmlWarning)
     assert warning.type == "PARSING_FAILURE"

@@ -79,7 +79,7 @@ def test_a_voice_that_is_late_does_not_make_the_body_jump():
         lines = LateSource()
         performing = player(lines=lines)
         performing.settle(1.0, 25.0)
-        performing.play_block(block(behaviours))
+        performing.director.accept(block(behaviours))
         turns = []
         for number in range(90):
             lines.ready = number / 25.0 >= ready_at
@@ -107,8 +107,8 @@ def test_the_same_blocks_give_the_same_motion():
 
 def test_intentions_of_fml_are_performed_and_a_bad_document_is_a_warning():
     playing = player()
-    playing.play_block('<fml id="f"><performative type="agree"/></fml>')
-    playing.play_block(b"<bml")
+    playing.director.accept('<fml id="f"><performative type="agree"/></fml>')
+    playing.director.accept(b"<bml")
     shown = playing.update(0.0)
     assert shown.realized.heads[0].lexeme == "NOD"
     warnings = [each for each in shown.feedback if isinstance(each, BmlWarning)]

@@ -41,7 +41,7 @@ def renderer():
 def test_frames_are_drawn_until_the_window_is_closed(renderer):
     screen, playing = Screen(), player()
     output = WindowOutput(HUMAN, screen, renderer, Mixer(SoundBank()), "body")
-    playing.play_block(block('<head lexeme="SHAKE"/>'))
+    playing.director.accept(block('<head lexeme="SHAKE"/>'))
     number = 0
     while not output.closed:
         output.show(playing, playing.update(number / 5.0))
@@ -54,11 +54,11 @@ def test_frames_are_drawn_until_the_window_is_closed(renderer):
 def test_a_voice_sounds_from_where_it_is_and_is_silent_when_it_is_cut_off():
     playing, mixer = player(), Mixer(SoundBank())
     output = VoiceOutput(mixer)
-    playing.play_block(block('<speech id="s" start="0.1"><text>One two three</text></speech>'))
+    playing.director.accept(block('<speech id="s" start="0.1"><text>One two three</text></speech>'))
     heard = []
     for number in range(12):
         if number == 6:
-            playing.play_block(block("", "c", 'composition="REPLACE"'))
+            playing.director.accept(block("", "c", 'composition="REPLACE"'))
         output.update(playing, playing.update(number / 10.0))
         heard.append(np.abs(mixer.render(SAMPLE_RATE // 10)).mean())
     sounding = [number for number, level in enumerate(heard) if level > 0.05]
@@ -67,6 +67,6 @@ def test_a_voice_sounds_from_where_it_is_and_is_silent_when_it_is_cut_off():
 
 def test_a_pose_is_placed_where_the_character_has_gone():
     playing = player()
-    playing.play_block(block('<locomotion target="0.2,0,0.2"/>'))
+    playing.director.accept(block('<locomotion target="0.2,0,0.2"/>'))
     poses = [placed_pose(playing.update(number / 10.0).posed) for number in range(40)]
     assert np.linalg.norm(poses[-1].translations[0]) > 1.0

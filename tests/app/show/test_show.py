@@ -206,7 +206,7 @@ WRONG = {
     "no text": ('<say who="a"> </say>', ":2: <say> needs a text"),
     "unknown cue": (
         "<fly/>",
-        ":2: <fly> is no cue; there are say, do, stop, sound, feel, wait, talk",
+        ":2: <fly> is no cue; there are say, do, stop, bml, sound, feel, wait, talk",
     ),
     "unknown attribute": ('<do who="a" at="3">wave</do>', ":2: <do> has no 'at'"),
     "unknown id": ('<wait for="x"/>', ":2: no cue before it has the id 'x'"),

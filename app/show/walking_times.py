@@ -1,7 +1,6 @@
 """How long a character takes to go somewhere on the table."""
 
 import math
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,12 +24,12 @@ class WalkingTimes:
 
     def __init__(self, character: Character) -> None:
         self._character = character
-        self._measured = lru_cache(maxsize=None)(self._trial)
+        self._measured: dict[Manner, tuple[float, float]] = {}
 
     def measure(self) -> None:
         """Measure all that `time` needs, so that no frame waits for it."""
         for manner in SPEEDS:
-            self._measured(manner)
+            self._pace_of(manner)
 
     def time(self, place: RootDelta, target: NDArray[np.float64], manner: Manner) -> float:
         """Return how long a way takes from a place to a target (x, z) on the table [s]."""
@@ -38,8 +37,13 @@ class WalkingTimes:
         distance = math.hypot(x - place.x, z - place.z)
         if distance <= ARRIVAL_DISTANCE_M:
             return 0.0
-        start, pace = self._measured(manner)
+        start, pace = self._pace_of(manner)
         return start + distance / pace + TURNING_S_PER_RAD * abs(place.bearing(x, z))
+
+    def _pace_of(self, manner: Manner) -> tuple[float, float]:
+        if manner not in self._measured:
+            self._measured[manner] = self._trial(manner)
+        return self._measured[manner]
 
     def _trial(self, manner: Manner) -> tuple[float, float]:
         """Return the time that starting and stopping take besides [s], and the pace [m/s]."""
