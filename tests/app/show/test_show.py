@@ -244,10 +244,10 @@ def test_a_play_without_a_display_is_written(cubeling):
     assert "'my.mp4' is no play: give a .show file" in errors
 
 
-def speeds(folder, typed_at, seconds=7.0):
-    """Return how fast the quickest joint turns from frame to frame [rad/s].
+def speeds(folder, typed_at, seconds):
+    """Return how fast the quickest joint turns in each frame [rad/s], and who decided.
 
-    A person tells a story with a gesture, and answers what is typed at a time with another one.
+    A person plays, and answers what is typed at a time.
     """
     hand = Hand()
     scenario = show_scenario(folder / "my.show")(CUBE, ScenarioSettings())
@@ -255,6 +255,7 @@ def speeds(folder, typed_at, seconds=7.0):
     away = np.eye(4)
     away[2, 3] = 0.5
     turned: list[Any] = []
+    talks = []
     due: dict[int, SpokenLine] = {}
     for number in range(round(seconds / FRAME)):
         controls = hand.frame()
@@ -271,27 +272,36 @@ def speeds(folder, typed_at, seconds=7.0):
         member.perform(member.command(seen, outcome, told, (), None))
         assert member.posed is not None
         turned.append(member.posed.pose.rotations)
+        talks.append(scenario._stage.talks)
     one, other = np.array(turned[:-1]), np.array(turned[1:])
     turns = rotations.to_rotation_vector(rotations.multiply(rotations.conjugate(one), other))
-    return np.linalg.norm(turns, axis=-1).max(axis=1) / FRAME
+    return np.linalg.norm(turns, axis=-1).max(axis=1) / FRAME, np.array(talks)
 
 
-@pytest.mark.slow(reason="a person is animated for fourteen seconds")
-def test_the_dialogue_takes_over_in_mid_gesture_without_a_jump(tmp_path):
+@pytest.mark.slow(reason="a person is animated for fifteen seconds")
+def test_a_dialogue_takes_over_in_mid_gesture_and_gives_back_in_another(tmp_path, monkeypatch):
+    monkeypatch.setattr("cubeling.app.show.scenario.BACK_S", 0.0)  # as soon as it is quiet
     show_of(
         tmp_path,
         '<say who="a"><begin_gesture id="g" anim="wave_big"/>A long and winding story begins'
-        '<end_gesture id="g"/> here, my friends.</say><wait seconds="60"/><talk script="my.xml"/>',
+        '<end_gesture id="g"/> here, my friends.</say><wait seconds="2"/>'
+        '<bml who="a"><gesture id="o" lexeme="OPEN_ARMS"/></bml><wait seconds="60"/>'
+        '<talk script="my.xml"/>',
         '<character name="a" body="human"/>',
     )
     (tmp_path / "my.xml").write_text(
         '<dialogue><unit name="u"><state name="q"><transition>'
-        '<condition type="input_match">* you *</condition><action type="say">'
-        '<begin_gesture id="g" anim="clap"/>Me? I am only a person,<end_gesture id="g"/> who '
-        "tells stories.</action></transition></state></unit></dialogue>"
+        '<condition type="input_match">* you *</condition><action type="say">Me? I am only a '
+        '<begin_gesture id="g" anim="clap"/>person who tells stories.<end_gesture id="g"/></action>'
+        "</transition></state></unit></dialogue>"
     )
-    alone, taken = speeds(tmp_path, math.inf), speeds(tmp_path, 1.5)
-    switch = round(1.5 / FRAME)
-    near, later = taken[switch - 1 : switch + 20], taken[switch + 20 :]
-    assert near.max() > 0.5, "something moves"
-    assert near.max() <= 1.2 * max(alone.max(), later.max())
+    (alone, _), (taken, talks) = speeds(tmp_path, math.inf, 5.5), speeds(tmp_path, 1.5, 9.0)
+    out, back = (int(np.flatnonzero(np.diff(talks.astype(int)) == step)[0]) for step in (1, -1))
+    assert out == pytest.approx(1.5 / FRAME, abs=2)
+    takeovers = [slice(at - 1, at + 20) for at in (out, back)]
+    rest = taken.copy()
+    for each in takeovers:
+        assert taken[each].max() > 0.5, "something moves"
+        rest[each] = 0.0
+    for each in takeovers:
+        assert taken[each].max() <= 1.2 * max(alone.max(), rest.max())
