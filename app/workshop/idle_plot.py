@@ -1,6 +1,7 @@
 """The plot of a person's idle motion: her postures, shifts, rests and small variations.
 
-Needs matplotlib, the extra `[plots]`; only `cubeling idle show` imports this module.
+Needs matplotlib, the extra `[plots]`; only `cubeling idle show` and the page of printed tables
+import this module.
 """
 
 from pathlib import Path
@@ -56,13 +57,14 @@ def save_plot(path: Path, database: IdleDatabase, title: str) -> None:
         The file cannot be written.
     """
     with matplotlib.rc_context(MATPLOTLIB_STYLE):
-        write_figure(draw(database, title), path, title)
+        figure = Figure(figsize=SIZE_IN, layout="constrained")
+        figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR, fontsize=15)
+        draw(figure, database)
+        write_figure(figure, path, title)
 
 
-def draw(database: IdleDatabase, title: str) -> Figure:
-    """Return the figure; see `save_plot`."""
-    figure = Figure(figsize=SIZE_IN, layout="constrained")
-    figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR, fontsize=15)
+def draw(figure: Figure, database: IdleDatabase) -> None:
+    """Draw the plot in an empty figure; see `save_plot`."""
     top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=(2.6, 1.0))[:, 0]
     balances = [name for name in BALANCES if name in database.by_balance]
     columns = min(MAX_POSTURES, max(len(own) for own in database.by_balance.values()))
@@ -75,7 +77,6 @@ def draw(database: IdleDatabase, title: str) -> Figure:
     _draw_transitions(graph, database)
     _draw_rests(dwells, database, balances)
     _draw_variations(bottom.subplots(), database)
-    return figure
 
 
 def body_of(skeleton: Skeleton) -> Character:

@@ -60,7 +60,18 @@ from cubeling.characters.synthesis.gestures.marks import (
 )
 from cubeling.characters.synthesis.gestures.marks_files import read_marks as read_marks
 from cubeling.characters.synthesis.gestures.marks_writing import write_marks as write_marks
-from cubeling.characters.synthesis.gestures.plan import PlannedGesture as PlannedGesture
+from cubeling.characters.synthesis.gestures.plan import (
+    GesturePlan as GesturePlan,
+    PlannedGesture as PlannedGesture,
+)
+from cubeling.characters.synthesis.gestures.planning import (
+    GesturePlanner as GesturePlanner,
+    GestureSettings as GestureSettings,
+)
+from cubeling.characters.synthesis.gestures.rules import (
+    IntensityRule as IntensityRule,
+    SynchronyRule as SynchronyRule,
+)
 from cubeling.characters.synthesis.graphs.building import (
     analyse as analyse,
     check_choices as check_choices,
@@ -86,18 +97,27 @@ from cubeling.characters.synthesis.idle.database import (
 )
 from cubeling.characters.synthesis.idle.idle_motion import IdleMotion as IdleMotion
 from cubeling.characters.synthesis.idle.motion_texture import StretchStream as StretchStream
-from cubeling.characters.synthesis.idle.posture_space import PostureVectors as PostureVectors
+from cubeling.characters.synthesis.idle.posture_space import (
+    PostureSpace as PostureSpace,
+    PostureVectors as PostureVectors,
+)
 from cubeling.characters.synthesis.idle.recordings import (
     BALANCES as BALANCES,
+    StandingRecording as StandingRecording,
     borrow_shifts as borrow_shifts,
+    find_rests as find_rests,
     read_parts as read_parts,
+    read_standing as read_standing,
 )
 from cubeling.characters.synthesis.idle.storage import (
     Person as Person,
     load_person as load_person,
     save_person as save_person,
 )
-from cubeling.characters.synthesis.idle.variations import COMPONENTS as COMPONENTS
+from cubeling.characters.synthesis.idle.variations import (
+    COMPONENTS as COMPONENTS,
+    VariationStream as VariationStream,
+)
 from cubeling.characters.synthesis.library import (
     DEFAULT_RATE_HZ as DEFAULT_RATE_HZ,
     MotionLibrary as MotionLibrary,

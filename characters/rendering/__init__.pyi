@@ -2,6 +2,11 @@ from cubeling.characters.rendering.context import (
     create_context as create_context,
     draws_in_software as draws_in_software,
 )
+from cubeling.characters.rendering.deferred.ambient_occlusion import (
+    NOTHING_M as NOTHING_M,
+    AmbientOcclusion as AmbientOcclusion,
+    AmbientOcclusionSettings as AmbientOcclusionSettings,
+)
 from cubeling.characters.rendering.drawing import (
     draw_clip as draw_clip,
     draw_picture as draw_picture,
@@ -17,6 +22,7 @@ from cubeling.characters.rendering.portrait_camera import (
     PortraitCamera as PortraitCamera,
     joints_below as joints_below,
 )
+from cubeling.characters.rendering.programs import ShaderPrograms as ShaderPrograms
 from cubeling.characters.rendering.quality import (
     FULL as FULL,
     QUALITIES as QUALITIES,

@@ -13,7 +13,11 @@ from cubeling.characters.speech.mouth import (
     MouthTracker as MouthTracker,
     phones_from_sound as phones_from_sound,
 )
-from cubeling.characters.speech.phones import SoundClass as SoundClass, sound_class as sound_class
+from cubeling.characters.speech.phones import (
+    SoundClass as SoundClass,
+    is_vowel as is_vowel,
+    sound_class as sound_class,
+)
 from cubeling.characters.speech.prosody.accent_labels import (
     LabelAgreement as LabelAgreement,
     read_accent_labels as read_accent_labels,
@@ -29,6 +33,14 @@ from cubeling.characters.speech.prosody.contours import (
     measure_prosody as measure_prosody,
 )
 from cubeling.characters.speech.prosody.onsets import OnsetDetector as OnsetDetector
+from cubeling.characters.speech.prosody.strength import (
+    AccentMeasures as AccentMeasures,
+    ev as ev,
+    ev2 as ev2,
+    matthews as matthews,
+    measure_accents as measure_accents,
+    psi as psi,
+)
 from cubeling.characters.speech.prosody.stress import stressed_like as stressed_like
 from cubeling.characters.speech.saying import say as say
 from cubeling.characters.speech.speech import (

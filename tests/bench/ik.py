@@ -27,14 +27,18 @@ from rich.console import Console
 from rich.table import Table
 
 from cubeling.app.commands.study.reproduce import shown_table
-from cubeling.app.workshop.reproduction.ik_figures import (
+from cubeling.app.workshop.reproduction.bodies.ik_figures import (
     CHAIN_SIZES,
     AloneFigures,
     SureFigures,
     measure_alone,
     measure_sure,
 )
-from cubeling.app.workshop.reproduction.ik_methods import alone_table, printed_table, sure_table
+from cubeling.app.workshop.reproduction.bodies.ik_methods import (
+    alone_table,
+    printed_table,
+    sure_table,
+)
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.ik.reaching import UpperBody
 from cubeling.characters.ik.reaching.arms import (

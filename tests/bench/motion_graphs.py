@@ -10,8 +10,7 @@ method has the least threshold that joins all four clips: the standard graph its
 graphs (SP4b) one that is shared out by weight (M2.2), or one for each part. Intervals are 95 % of
 the bootstrap over the choices. Times are of the processor, so that other programs do not count.
 
-`--tables` prints tables 3.2 to 3.4 instead: what the thesis prints, what its own way of building
-and searching gives, and what ours does, with intervals over the choices.
+Tables 3.2 to 3.4 are those of `cubeling reproduce motion-graphs`.
 """
 
 import argparse
@@ -24,20 +23,12 @@ from pathlib import Path
 
 import numpy as np
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import track
 from rich.table import Table
 
-from cubeling.app.counted import quantity
-from cubeling.app.workshop.motion_graphs.page import write_page
 from cubeling.app.workshop.motion_graphs.recordings import fit_recording
-from cubeling.app.workshop.motion_graphs.summary import (
-    TITLES,
-    bootstrap_interval,
-    printed_value,
-    summarize,
-)
-from cubeling.app.workshop.motion_graphs.tables import SPLIT_PROFILES, measure
+from cubeling.app.workshop.reproduction.motion_graphs.measuring import SPLIT_PROFILES
+from cubeling.app.workshop.reproduction.motion_graphs.summary import bootstrap_interval
 from cubeling.characters import Character
 from cubeling.characters.retargeting import load_recording
 from cubeling.characters.synthesis.distances import thesis_distance
@@ -72,9 +63,6 @@ CHOICES = 6
 
 STRIDE = 8
 """Every so many frames of a clip, the other clips are asked for."""
-
-TABLE_STRIDE = 16
-"""The same for tables 3.2 to 3.4, of which a choice takes one to two minutes of a processor."""
 
 
 @dataclass(frozen=True)
@@ -205,42 +193,6 @@ def orderings(console: Console, names: list[tuple[str, ...]]) -> None:
         console.print("  " + ", ".join(choice.clips), style="dim")
 
 
-COLORS = {2: "red", 3: "yellow", 4: "green"}
-"""Colour of a cell of table 3.2 by the number of clips that are joined."""
-
-
-def printed_tables(console: Console, names: list[tuple[str, ...]], output: Path | None) -> None:
-    """Print tables 3.2 to 3.4 over choices of clips: as printed, and in our own way."""
-    choices = []
-    for each in track(names, "tables", console=console):
-        choices.append(measure(library(each), TABLE_STRIDE, curves=False))
-    found = summarize(choices)
-    for name, title in TITLES.items():
-        table = Table(title=f"{escape(title)}, over {len(choices)} choices of four clips")
-        for heading in ("", "", "thesis", *found.ways):
-            table.add_column(heading)
-        for key, cells in found.cells.items():
-            if key[0] == name:
-                shown = []
-                for estimate in (cells[way] for way in found.ways):
-                    color = COLORS.get(estimate.joined or 0, "default")
-                    shown.append(f"[{color}]{estimate.text}[/]  [dim]{estimate.spread}[/]")
-                table.add_row(key[1], key[2], printed_value(key), *shown)
-        console.print(table)
-    console.print("table 3.2: red, yellow and green where two, three and four clips are joined")
-    actors = [len({name[:2] for name in each}) for each in names]
-    for what, wanted in (("of one actor", {1}), ("of several actors", {2, 3, 4})):
-        own = [choice for choice, count in zip(choices, actors, strict=True) if count in wanted]
-        for way in found.ways if own else ():
-            order = summarize(own).order(way)
-            console.print(f"{quantity(len(own), 'choice')} {what}, {order}", soft_wrap=True)
-    for way in found.ways:
-        every = quantity(len(choices), "choice")
-        console.print(f"{every} in all, {found.order(way)}", soft_wrap=True)
-    if output:
-        write_page(found, output)
-
-
 def speed(console: Console, count: int) -> bool:
     """Print the speed of a large graph, and whether all requests were answered."""
     human = Character.load("human")
@@ -357,19 +309,12 @@ def main() -> None:
         "--requests", type=int, default=1000, help="requests of the large graph; 0 leaves it out"
     )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument(
-        "--tables", action="store_true", help="only tables 3.2 to 3.4, as printed and ours"
-    )
-    parser.add_argument("--page", type=Path, help="an .html file for these tables, too")
     options = parser.parse_args()
     console = Console(width=130)
     if not CMU.is_dir():
         console.print(f"no recordings at {CMU}: nothing to measure")
         return
     names = choose(options.choices, options.seed)
-    if options.tables:
-        printed_tables(console, names, options.page)
-        return
     good = not options.requests or speed(console, options.requests)
     joint_weights(console)
     if names:

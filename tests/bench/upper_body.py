@@ -21,7 +21,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.workshop.motion_graphs.summary import bootstrap_interval
+from cubeling.app.workshop.reproduction.motion_graphs.summary import bootstrap_interval
 from cubeling.characters import Character, Pose
 from cubeling.characters.body.axes import Degrees, body_axes, rotation_vectors
 from cubeling.characters.body.capsules import CapsuleBody

@@ -26,7 +26,6 @@ from cubeling.app.input_path import check_character, check_motions
 from cubeling.characters.motion import DEFAULT_PROFILE
 
 if TYPE_CHECKING:
-    from cubeling.app.workshop.motion_graphs.tables import Measurement
     from cubeling.characters.motion import MotionGraph, MotionLibrary, PartGraphs, StoredGraph
 
 app = CommandGroup("Make motion graphs of your own recordings: where one clip can follow another.")
@@ -193,94 +192,6 @@ def transition(
         from cubeling.app.workshop.motion_graphs.timeline import save_timeline
     save_timeline(output, stored.library, found, f"{origin} → {target}")
     console.print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
-
-
-@app.command()
-def tables(
-    clips: Annotated[
-        list[str],
-        typer.Argument(
-            help="Four motions: a walk, a run, a walk with long steps, a slow walk; or several "
-            "choices of four."
-        ),
-    ],
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="The .html page; a .csv of its name is written too."),
-    ] = None,
-    overwrite: OverwriteOption = False,
-    character: Annotated[str, typer.Option(help="Whose skeleton the clips get.")] = "human",
-    stride: Annotated[
-        int,
-        typer.Option(
-            min=1, help="Frames from one request to the next; each asks for every other clip."
-        ),
-    ] = 8,
-    as_printed: Annotated[
-        bool,
-        typer.Option(
-            "--as-printed/--ours-only",
-            help="Whether to search as the thesis prints it, too; it takes four times as long.",
-        ),
-    ] = True,
-    skeleton: Annotated[
-        Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
-    ] = None,
-) -> None:
-    """Make tables 3.2 to 3.4 and the curves of Fernández-Baena's thesis from four clips.
-
-    Printed values stand beside those that the printed search gives, and beside ours. Several
-    choices of four clips give means with 95 % intervals. Each takes some minutes. It needs
-    matplotlib.
-
-    Example: cubeling motions tables walk.amc run.amc long.amc slow.amc -o tables.html
-    """
-    target = chosen_output(output, "tables.html", "page", (".html",), overwrite)
-    with needs_matplotlib():
-        from cubeling.app.workshop.motion_graphs.page import write_page
-    from cubeling.app.workshop.motion_graphs.recordings import clip_names, gather
-    from cubeling.app.workshop.motion_graphs.summary import summarize
-    from cubeling.app.workshop.motion_graphs.tables import AS_PRINTED, OURS, measure
-    from cubeling.characters import Character
-    from cubeling.characters.model import with_root_joint
-    from cubeling.characters.motion import DEFAULT_RATE_HZ, MotionLibrary
-
-    names = clip_names(clips)
-    if len(names) % 4:
-        raise AppError(
-            f"{quantity(len(names), 'clip')}: give four, a walk, a run, long steps and a slow "
-            "walk, or several choices of four"
-        )
-    body = with_root_joint(Character.load(character))
-    console = Console()
-    choices: list[Measurement] = []
-    with console.status("reading") as status:
-        libraries = [
-            MotionLibrary.of(
-                gather(names[first : first + 4], body, skeleton),
-                body.skeleton,
-                body.anatomy,
-                DEFAULT_RATE_HZ,
-            )
-            for first in range(0, len(names), 4)
-        ]
-        for number, library in enumerate(libraries, 1):
-            where = f"choice {number} of {len(libraries)}, " if len(libraries) > 1 else ""
-
-            def report(what: str, where: str = where) -> None:
-                status.update(f"{where}{what}")
-
-            ways = (AS_PRINTED, OURS) if as_printed else (OURS,)
-            choices.append(measure(library, stride, ways, not choices, report))
-    summary = summarize(choices)
-    table = write_page(summary, target)
-    for way in summary.ways:
-        console.print(summary.order(way), highlight=False)
-    console.print(
-        f"[bold]{escape(str(target))}[/] and [bold]{escape(str(table))}[/] are written",
-        soft_wrap=True,
-        highlight=False,
-    )
 
 
 def describe(console: Console, stored: StoredGraph) -> None:

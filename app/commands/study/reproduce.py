@@ -1,5 +1,6 @@
 """The command `cubeling reproduce`."""
 
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,11 +10,12 @@ from rich.markup import escape
 from rich.table import Table
 
 from cubeling.app.errors import AppError
+from cubeling.app.input_path import check_motions
 from cubeling.app.output_path import check_output_folder, output_folder
 
 if TYPE_CHECKING:
+    from cubeling.app.workshop.pages.report_table import ReportTable
     from cubeling.app.workshop.reproduction.page import Attempt
-    from cubeling.app.workshop.reproduction.result import ResultTable
 
 
 def reproduce(
@@ -28,6 +30,14 @@ def reproduce(
         Path | None,
         typer.Option(help="The folder of recordings that some tables need, such as cmu-mocap."),
     ] = None,
+    clips: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--clip",
+            help="For motion-graphs, a motion of your own; give four: a walk, a run, a walk with "
+            "long steps, a slow walk; or several choices of four.",
+        ),
+    ] = None,
     listing: Annotated[
         bool, typer.Option("--list", help="List the tables, and what each needs.")
     ] = False,
@@ -35,15 +45,16 @@ def reproduce(
         bool, typer.Option("--overwrite", help="Overwrite an earlier page.")
     ] = False,
 ) -> None:
-    """Make the printed tables of the four works again, beside what they print.
+    """Make the printed tables and figures of the theses again, beside what they print.
 
     A table that cannot be made says why: some need recordings, some were made from what nobody
-    published.
+    published. The plots of the page need matplotlib, the reports of studies SciPy.
 
     Example: cubeling reproduce ik-methods gesture-graph -o report
     """
     from cubeling.app.workshop.reproduction.page import Attempt, files_of, write_report
     from cubeling.app.workshop.reproduction.registry import chosen_tables
+    from cubeling.app.workshop.reproduction.result import ReproductionRequest
 
     console = Console()
     tables = chosen_tables(names or ())
@@ -56,6 +67,7 @@ def reproduce(
         return
     if data is not None and not data.is_dir():
         raise AppError(f"there is no folder '{data}'")
+    check_motions(clips or ())
     if output is not None:
         expected = [Attempt(table, None) for table in tables]
         check_output_folder(output, files_of(expected), "reproduced tables", overwrite=overwrite)
@@ -67,8 +79,11 @@ def reproduce(
                 status.update(f"{name}: {what}")
 
             report("…")
+            begin, worked = time.perf_counter(), time.process_time()
             try:
-                attempts.append(Attempt(table, table.reproduce(data, report)))
+                found = table.reproduce(ReproductionRequest(data, tuple(clips or ()), report))
+                times = time.perf_counter() - begin, time.process_time() - worked
+                attempts.append(Attempt(table, found, "", *times))
             except AppError as error:
                 if names:
                     raise
@@ -91,11 +106,11 @@ def _show(console: Console, attempt: "Attempt") -> None:
         return
     for each in found.tables:
         console.print(shown_table(each))
-    console.print(f"Made from {escape(found.data)}.", highlight=False)
+    console.print(f"Made from {escape(found.data)}, in {attempt.cost}.", highlight=False)
     console.print(f"What differs: {escape(found.differs)}\n", highlight=False)
 
 
-def shown_table(table: "ResultTable") -> Table:
+def shown_table(table: "ReportTable") -> Table:
     """Return a table for a terminal of 80 columns; what is printed is dim."""
     shown = Table(
         title=escape(table.title),

@@ -1,6 +1,7 @@
 """The plot of which clip each part of the body plays: figures 3.8 to 3.10 of the thesis.
 
-Needs matplotlib, the extra `[plots]`; only `cubeling motions transition` imports this module.
+Needs matplotlib, the extra `[plots]`; only `cubeling motions transition` and the page of printed
+tables import this module.
 """
 
 from collections.abc import Mapping, Sequence
@@ -51,30 +52,48 @@ def save_timeline(
     AppError
         The file cannot be written.
     """
-    heights = [PANEL_IN + ROW_IN * len(each.parts) for each in found]
-    last = max(each.transition.duration for each in found)
     with matplotlib.rc_context(MATPLOTLIB_STYLE):
-        count = last + 2 * CONTEXT_FRAMES
-        playing = [
-            each.clips(library, CONTEXT_FRAMES + last)[:, last : last + count] for each in found
-        ]
-        order = list(dict.fromkeys(np.concatenate([rows.T.ravel() for rows in playing]).tolist()))
-        styles = {clip: _style(place) for place, clip in enumerate(order)}
-        edge = EDGE_IN + LEGEND_ROW_IN * -(-len(order) // LEGEND_COLUMNS)
-        figure = Figure(figsize=(WIDTH_IN, sum(heights) + edge), layout="constrained")
-        grid = figure.subplots(len(found), 1, sharex=True, height_ratios=heights, squeeze=False)
-        for axes, each, rows in zip(grid[:, 0], found, playing, strict=True):
-            _draw(axes, library, each, rows, styles)
-        grid[-1, 0].set_xlabel(f"frames since the request, at {library.rate:g} Hz")
-        grid[-1, 0].set_xlim(-CONTEXT_FRAMES, last + CONTEXT_FRAMES)
+        figure = Figure(figsize=timeline_size_in(library, found), layout="constrained")
+        draw_timeline(figure, library, found)
         figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR)
-        patches = [
-            Patch(label=printable(library.names[clip]), **style) for clip, style in styles.items()
-        ]
-        figure.legend(
-            handles=patches, loc="outside lower center", ncols=LEGEND_COLUMNS, frameon=False
-        )
         write_figure(figure, path, title)
+
+
+def timeline_size_in(
+    library: MotionLibrary, found: Sequence[FoundTransition]
+) -> tuple[float, float]:
+    """Return the width and the height that the plot of transitions needs [in]."""
+    shown = {clip for rows in _playing(library, found) for clip in rows.ravel().tolist()}
+    edge = EDGE_IN + LEGEND_ROW_IN * -(-len(shown) // LEGEND_COLUMNS)
+    return WIDTH_IN, sum(_heights(found)) + edge
+
+
+def draw_timeline(figure: Figure, library: MotionLibrary, found: Sequence[FoundTransition]) -> None:
+    """Draw which clip each part plays, in an empty figure."""
+    playing = _playing(library, found)
+    order = list(dict.fromkeys(np.concatenate([rows.T.ravel() for rows in playing]).tolist()))
+    styles = {clip: _style(place) for place, clip in enumerate(order)}
+    grid = figure.subplots(len(found), 1, sharex=True, height_ratios=_heights(found), squeeze=False)
+    for axes, each, rows in zip(grid[:, 0], found, playing, strict=True):
+        _draw(axes, library, each, rows, styles)
+    grid[-1, 0].set_xlabel(f"frames since the request, at {library.rate:g} Hz")
+    last = max(each.transition.duration for each in found)
+    grid[-1, 0].set_xlim(-CONTEXT_FRAMES, last + CONTEXT_FRAMES)
+    patches = [
+        Patch(label=printable(library.names[clip]), **style) for clip, style in styles.items()
+    ]
+    figure.legend(handles=patches, loc="outside lower center", ncols=LEGEND_COLUMNS, frameon=False)
+
+
+def _playing(library: MotionLibrary, found: Sequence[FoundTransition]) -> list[NDArray[np.intp]]:
+    """Return the clips of each, (parts, times), all over the time of the longest."""
+    last = max(each.transition.duration for each in found)
+    count = last + 2 * CONTEXT_FRAMES
+    return [each.clips(library, CONTEXT_FRAMES + last)[:, last : last + count] for each in found]
+
+
+def _heights(found: Sequence[FoundTransition]) -> list[float]:
+    return [PANEL_IN + ROW_IN * len(each.parts) for each in found]
 
 
 def _style(place: int) -> dict[str, Any]:

@@ -41,7 +41,10 @@ th:first-child, td:first-child {
 }
 .words td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
 .words td:first-child { font-weight: 600; min-width: 8rem; overflow-wrap: normal; }
-thead th { border-bottom: 2px solid var(--ink); font-weight: 600; }
+thead th { border-bottom: 2px solid var(--ink); font-weight: 600; white-space: normal; }
+th.quiet, td.quiet { color: var(--quiet); }
+figure { margin: 1rem 0; }
+figcaption { color: var(--quiet); font-size: .9rem; }
 .note { color: var(--quiet); font-size: .9rem; margin: .25rem 0 1rem; }
 svg { width: 100%; max-width: 45rem; height: auto; display: block; margin: .5rem 0; }
 svg text { font: 13px system-ui, sans-serif; fill: var(--ink); }
@@ -92,16 +95,25 @@ def items(lines: Sequence[str]) -> str:
     return "<ul>" + "".join(f"<li>{escape(line)}</li>" for line in lines) + "</ul>"
 
 
-def table(content: ReportTable, *, words: bool = False) -> str:
+def table(content: ReportTable, *, words: bool = False, quiet: str = "") -> str:
     """Return a table that scrolls by itself where it is wider than the page.
 
-    With `words`, its cells are texts that wrap, not figures.
+    With `words`, its cells are texts that wrap, not figures. Columns whose heading begins with
+    `quiet` are grey; none if it is empty.
     """
-    head = "".join(f'<th scope="col">{escape(column)}</th>' for column in content.columns)
+    grey = [
+        ' class="quiet"' if quiet and column.startswith(quiet) else "" for column in content.columns
+    ]
+    head = "".join(
+        f'<th scope="col"{kind}>{escape(column)}</th>'
+        for kind, column in zip(grey, content.columns, strict=True)
+    )
     if not any(content.columns):
         head = ""
     body = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
+        "<tr>"
+        + "".join(f"<td{kind}>{escape(cell)}</td>" for kind, cell in zip(grey, row, strict=True))
+        + "</tr>"
         for row in content.rows
     )
     kind = ' class="words"' if words else ""

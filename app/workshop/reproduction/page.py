@@ -4,25 +4,25 @@ import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
+from importlib.util import find_spec
 from pathlib import Path
 
 from cubeling.app.errors import AppError
+from cubeling.app.workshop.pages.page import heading, page, paragraph, table
+from cubeling.app.workshop.pages.report_table import ReportTable
 from cubeling.app.workshop.reproduction.registry import PrintedTable
-from cubeling.app.workshop.reproduction.result import PRINTED, Reproduction, ResultTable
+from cubeling.app.workshop.reproduction.result import PRINTED, Plot, Reproduction
 from cubeling.files import whole_file, write_whole
 
 PAGE = "index.html"
 """Name of the page in its folder."""
 
-STYLE = """body { font: 15px/1.5 sans-serif; color: #2b3345; max-width: 76em; margin: 2em auto;
-  padding: 0 1em; }
-h2 { margin-top: 2.2em; } h2 small { color: #6d7385; font-weight: normal; margin-left: .6em; }
-table { border-collapse: collapse; margin: 1em 0; } caption { text-align: left; font-weight: 600; }
-td, th { padding: .25em .8em; text-align: right; vertical-align: top; }
-th { font-weight: 600; border-bottom: 1px solid #9aa1b2; } tr { border-bottom: 1px solid #dcdfe6; }
-td:first-child, th:first-child { text-align: left; } .printed { color: #6d7385; }
-.text td, .text th { text-align: left; } .wide { overflow-x: auto; } .missing { color: #6d7385; }
-nav a { margin-right: 1.2em; }"""
+TITLE = "Printed tables, made again"
+
+NO_MATPLOTLIB = "Plots need matplotlib: pip install matplotlib"
+
+LONG_CELL = 40
+"""Letters from which on a cell is a text that wraps."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,17 @@ class Attempt:
     refusal: str = ""
     """The line that says why it could not be made."""
 
+    seconds: float = 0.0
+    """How long it took on the clock [s]."""
+
+    cpu_seconds: float = 0.0
+    """How long processors worked for it [s]."""
+
+    @property
+    def cost(self) -> str:
+        """How long it took, in words."""
+        return f"{duration(self.seconds)} ({duration(self.cpu_seconds)} of processor time)"
+
 
 def files_of(attempts: Sequence[Attempt]) -> list[str]:
     """Return the names of the files that are written."""
@@ -46,61 +57,90 @@ def files_of(attempts: Sequence[Attempt]) -> list[str]:
 
 def write_report(attempts: Sequence[Attempt], folder: Path) -> None:
     """Write the page and the .csv files into a folder that is there."""
-    links = "".join(
-        f'<a href="#{each.table.name}">{escape(each.table.name)}</a>' for each in attempts
-    )
-    body = [
-        "<h1>Printed tables, made again</h1>",
-        "<p>What four published works print, in grey, beside what this program gives.</p>",
-        f"<nav>{links}</nav>",
-        *(_section(each) for each in attempts),
+    made = sum(each.found is not None for each in attempts)
+    total = sum(each.seconds for each in attempts)
+    parts = [
+        heading(TITLE, 1),
+        paragraph(
+            "What four published works print, in grey, beside what this program gives. "
+            f"{made} of {len(attempts)} could be made here, in {duration(total)}."
+        ),
+        _contents(attempts),
+        *(part for each in attempts for part in _section(each)),
     ]
-    head = (
-        "<!doctype html><html lang=en><meta charset=utf-8>"
-        f"<title>Printed tables, made again</title><style>{STYLE}</style>"
-    )
-    write_whole(folder / PAGE, head + "\n".join(body) + "\n", AppError)
+    write_whole(folder / PAGE, page(TITLE, parts), AppError)
     for attempt in attempts:
-        for name, table in _csv_tables(attempt):
+        for name, own in _csv_tables(attempt):
             with (
                 whole_file(folder / name, AppError) as partial,
                 partial.open("w", newline="", encoding="utf-8") as file,
             ):
-                csv.writer(file).writerows([table.columns, *table.rows])
+                csv.writer(file).writerows([own.columns, *own.rows])
 
 
-def _csv_tables(attempt: Attempt) -> list[tuple[str, ResultTable]]:
+def duration(seconds: float) -> str:
+    """Return a time in words.
+
+    >>> duration(0.04), duration(31.2), duration(247.0)
+    ('0.04 s', '31 s', '4.1 min')
+    """
+    if seconds >= 100.0:
+        return f"{seconds / 60.0:.1f} min"
+    return f"{seconds:.0f} s" if seconds >= 10.0 else f"{seconds:.2g} s"
+
+
+def _csv_tables(attempt: Attempt) -> list[tuple[str, ReportTable]]:
     tables = attempt.found.tables if attempt.found else ()
     name = attempt.table.name
     if len(tables) == 1:
         return [(f"{name}.csv", tables[0])]
-    return [(f"{name}-{number}.csv", table) for number, table in enumerate(tables, 1)]
+    return [(f"{name}-{number}.csv", each) for number, each in enumerate(tables, 1)]
 
 
-def _section(attempt: Attempt) -> str:
-    table, found = attempt.table, attempt.found
-    head = f"<h2 id={table.name}>{escape(table.title)}<small>{escape(table.source)}</small></h2>"
+def _contents(attempts: Sequence[Attempt]) -> str:
+    """Return a list of all tables by work, with links."""
+    works: dict[str, list[Attempt]] = {}
+    for each in attempts:
+        works.setdefault(each.table.work, []).append(each)
+    lists = []
+    for work, own in works.items():
+        lines = "".join(
+            f'<li><a href="#{each.table.name}">{escape(each.table.printed_in)}</a>: '
+            f"{escape(each.table.title)}{'' if each.found else ' (not made)'}</li>"
+            for each in own
+        )
+        lists.append(f"<h3>{escape(work)}</h3><ul>{lines}</ul>")
+    return f"<nav>{''.join(lists)}</nav>"
+
+
+def _section(attempt: Attempt) -> list[str]:
+    own, found = attempt.table, attempt.found
+    title = f'<h2 id="{own.name}">{escape(own.title)}</h2>'
+    parts = [title, paragraph(f"{own.source}: cubeling reproduce {own.name}", "note")]
     if found is None:
-        reason = attempt.refusal.removeprefix(f"{table.name}: ")
-        return f"{head}<p class=missing>Not made: {escape(reason)}.</p>"
-    rows = "".join(_html_table(each) for each in found.tables)
-    return (
-        f"{head}{rows}<p><b>Made from</b> {escape(found.data)}.</p>"
-        f"<p><b>What differs.</b> {escape(found.differs)}</p>"
-    )
+        shown = [] if own.printed is None else [_table(own.printed)]
+        reason = attempt.refusal.removeprefix(f"{own.name}: ")
+        return [*parts, *shown, paragraph(f"Not made: {reason}.", "warning")]
+    parts += [_table(each) for each in found.tables]
+    parts += _plots(found.plots)
+    for words, text in (("Made from", f"{found.data}."), ("What differs.", found.differs)):
+        parts.append(f"<p><b>{words}</b> {escape(text)}</p>")
+    return [*parts, paragraph(f"It took {attempt.cost} here.", "note")]
 
 
-def _html_table(table: ResultTable) -> str:
-    classes = [" class=printed" if c.startswith(PRINTED) else "" for c in table.columns]
-    head = "".join(f"<th{c}>{escape(t)}</th>" for c, t in zip(classes, table.columns, strict=True))
-    rows = "".join(
-        "<tr>"
-        + "".join(f"<td{c}>{escape(t)}</td>" for c, t in zip(classes, row, strict=True))
-        + "</tr>"
-        for row in table.rows
-    )
-    words = " class=text" if any(len(t) > 40 for row in table.rows for t in row) else ""
-    return (
-        f"<div class=wide><table{words}><caption>{escape(table.title)}</caption>"
-        f"<tr>{head}</tr>{rows}</table></div>"
-    )
+def _table(content: ReportTable) -> str:
+    words = any(len(cell) > LONG_CELL for row in content.rows for cell in row)
+    return table(content, words=words, quiet=PRINTED)
+
+
+def _plots(plots: Sequence[Plot]) -> list[str]:
+    if not plots:
+        return []
+    if find_spec("matplotlib") is None:
+        return [paragraph(NO_MATPLOTLIB, "note")]
+    from cubeling.app.workshop.reproduction.plots import inline_svg
+
+    return [
+        f"<figure>{inline_svg(each)}<figcaption>{escape(each.title)}</figcaption></figure>"
+        for each in plots
+    ]

@@ -25,6 +25,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.app.workshop.reproduction.bodies.occlusion_timing import (
+    THESIS_MS,
+    Timing,
+    Variant,
+    fit_line,
+    measure,
+)
 from cubeling.characters.rendering import create_context, draws_in_software
 from cubeling.characters.rendering.deferred.ambient_occlusion import ESTIMATORS
 from cubeling.characters.rendering.programs import ShaderPrograms
@@ -37,8 +44,7 @@ from tests.bench.ambient_occlusion.quality import (
     variant_qualities,
 )
 from tests.bench.ambient_occlusion.scenes import CHARACTERS, HELD_OUT, TUNED, load
-from tests.bench.ambient_occlusion.scoring import THESIS, GBuffer, TracedScene
-from tests.bench.ambient_occlusion.timing import THESIS_MS, Timing, Variant, fit_line, measure
+from tests.bench.ambient_occlusion.scoring import THESIS, TracedScene, buffer_of
 
 MAX_RMSE, MAX_DELTA_E = 0.03, 3.0
 """The gate."""
@@ -254,7 +260,7 @@ def main() -> None:
             variant_qualities(context, programs, COMPARED, COMPARED_SIZE, COMPARED_RAYS),
         )
     timed = next(scene for scene in scenes if scene.scene.name == TIMED)
-    buffer = GBuffer.of(context, timed)
+    buffer = buffer_of(context, timed)
     variants = {
         (name, samples, separable): replace(
             THESIS,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
+from cubeling.app.workshop.reproduction.bodies.occlusion_buffer import lab_difference
 from cubeling.characters.rendering import create_context
 from cubeling.characters.rendering.deferred.ambient_occlusion import ESTIMATORS
 from cubeling.characters.rendering.programs import ShaderPrograms
@@ -15,10 +16,9 @@ from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import (
     THESIS,
     Floats,
-    GBuffer,
     TracedScene,
+    buffer_of,
     drawn,
-    lab_difference,
 )
 
 PATH = Path(__file__).parents[3] / "docs" / "pictures" / "ambient-occlusion.jpg"
@@ -54,7 +54,7 @@ def main() -> None:
     rows = []
     for name, (x, y, width, height) in SHOWN.items():
         traced = TracedScene(load(name), SIZE, RAYS)
-        buffer = GBuffer.of(context, traced)
+        buffer = buffer_of(context, traced)
         part = np.s_[y : y + height, x : x + width]
         columns = [captioned("ray-traced", traced.truth[part])]
         differences = [captioned("Lab difference:", np.ones_like(traced.truth[part]))]

@@ -17,9 +17,9 @@ from tests.bench.ambient_occlusion.scenes import load
 from tests.bench.ambient_occlusion.scoring import (
     THESIS,
     Floats,
-    GBuffer,
     Score,
     TracedScene,
+    buffer_of,
     drawn,
     gain_between,
     score,
@@ -59,7 +59,7 @@ def scene_quality(
     context: moderngl.Context, programs: ShaderPrograms, traced: TracedScene, has_character: bool
 ) -> SceneQuality:
     """Score the default settings on a scene."""
-    buffer = GBuffer.of(context, traced)
+    buffer = buffer_of(context, traced)
     seen, truth = traced.surfaces.seen, traced.truth
     settings = AmbientOcclusionSettings(radius_m=traced.scene.radius_m)
     found = drawn(context, programs, buffer, settings)
@@ -111,7 +111,7 @@ def variant_qualities(
 ) -> list[VariantQuality]:
     """Draw all estimators × k × patterns in both forms, and score them over all scenes at once."""
     scenes = [TracedScene(load(name), size, rays) for name in names]
-    buffers = [GBuffer.of(context, scene) for scene in scenes]
+    buffers = [buffer_of(context, scene) for scene in scenes]
     seen = np.concatenate([scene.surfaces.seen for scene in scenes])
     truth = np.concatenate([scene.truth for scene in scenes])
     results = []

@@ -22,7 +22,7 @@ from cubeling.characters.rendering.deferred.ambient_occlusion import (
 )
 from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.scenes import TUNED, load
-from tests.bench.ambient_occlusion.scoring import THESIS, GBuffer, TracedScene, drawn
+from tests.bench.ambient_occlusion.scoring import THESIS, TracedScene, buffer_of, drawn
 
 SIZE, RAYS = (320, 240), 128
 GRID = {
@@ -60,7 +60,7 @@ def main() -> None:
     context = create_context()
     programs = ShaderPrograms(context)
     scenes = [TracedScene(load(name), SIZE, RAYS) for name in TUNED]
-    buffers = [GBuffer.of(context, scene) for scene in scenes]
+    buffers = [buffer_of(context, scene) for scene in scenes]
     table = Table("estimator", *(each.name for each in fields(Estimator)), "RMSE", *TUNED)
     for name in ESTIMATORS:
         best: tuple[float, list[float], Estimator] | None = None

@@ -6,6 +6,7 @@ import moderngl
 import numpy as np
 import pytest
 
+from cubeling.app.workshop.reproduction.bodies.occlusion_buffer import GBuffer
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.rendering.deferred.ambient_occlusion import (
     ESTIMATORS,
@@ -21,7 +22,7 @@ from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.product import product_quality
 from tests.bench.ambient_occlusion.quality import matched_score
 from tests.bench.ambient_occlusion.scenes import load
-from tests.bench.ambient_occlusion.scoring import THESIS, GBuffer, TracedScene, drawn, score
+from tests.bench.ambient_occlusion.scoring import THESIS, TracedScene, buffer_of, drawn, score
 from tests.examples import some
 from tools.ray_tracing import VisibleSurfaces
 
@@ -174,7 +175,7 @@ def test_two_lines_miss_less_of_the_full_form_than_one_with_as_many_samples(
         )
         return matched_score(found, full, balls.surfaces.seen).rmse
 
-    buffer = GBuffer.of(ctx, balls)
+    buffer = buffer_of(ctx, balls)
     assert error(11, 2) <= 0.6 * error(22, 1)
     buffer.release()
 
@@ -187,7 +188,7 @@ def test_two_lines_are_closer_to_a_dense_disc_than_one_with_as_many_samples(
     by_area = replace(ESTIMATORS["angular"], crowding=0.0, by_area=1.0)
     radius = balls.scene.radius_m
     two = replace(THESIS, estimator="angular", samples=samples, radius_m=radius, constants=by_area)
-    buffer = GBuffer.of(ctx, balls)
+    buffer = buffer_of(ctx, balls)
     variants = two, replace(two, samples=2 * samples, lines=1), replace(two, samples=41, lines=16)
     found, one_line, dense = (drawn(ctx, programs, buffer, each) for each in variants)
     buffer.release()
@@ -199,7 +200,7 @@ def test_two_lines_are_closer_to_a_dense_disc_than_one_with_as_many_samples(
 @pytest.mark.parametrize("samples", some([11, 5, 21]))
 @pytest.mark.parametrize("estimator", ESTIMATORS)
 def test_the_separable_form_is_close_to_the_full_form(ctx, programs, balls, estimator, samples):
-    buffer = GBuffer.of(ctx, balls)
+    buffer = buffer_of(ctx, balls)
     radius = balls.scene.radius_m
     separable = replace(THESIS, estimator=estimator, samples=samples, radius_m=radius)
     found, full = (
@@ -220,7 +221,7 @@ def corner():
 @pytest.mark.parametrize("name", some(["corner", "human", "vleo"]))
 def test_the_default_settings_are_close_to_ray_traced_pictures(ctx, programs, corner, name):
     traced = corner if name == "corner" else TracedScene(load(name), (320, 240), 32)
-    buffer = GBuffer.of(ctx, traced)
+    buffer = buffer_of(ctx, traced)
     found = drawn(ctx, programs, buffer, AmbientOcclusionSettings(radius_m=traced.scene.radius_m))
     buffer.release()
     result = score(found, traced.truth, traced.surfaces.seen)
@@ -276,7 +277,7 @@ def test_cells_of_several_texels_are_close_to_ray_traced_pictures_too(
 ):
     depths = np.pad(corner.depths, ((0, 2), (0, 2), (0, 0)), mode="edge")
     cells = np.ascontiguousarray(depths[stride // 2 :: stride, stride // 2 :: stride])
-    buffer = GBuffer.of(ctx, corner)
+    buffer = buffer_of(ctx, corner)
     buffer.depths.release()
     buffer.depths = ctx.texture(cells.shape[1::-1], 4, cells.tobytes(), dtype="f4")
     settings = AmbientOcclusionSettings(radius_m=corner.scene.radius_m)
@@ -308,7 +309,7 @@ def test_the_background_is_open(draw, balls):
 
 
 def test_only_the_first_texels_of_larger_textures_count(ctx, programs, balls):
-    small, large = GBuffer.of(ctx, balls), GBuffer.of(ctx, balls)
+    small, large = buffer_of(ctx, balls), buffer_of(ctx, balls)
     rng = np.random.default_rng(0)
     for name in ("normal_id", "position", "depths"):
         values = np.frombuffer(getattr(large, name).read(), np.float32).reshape(*SIZE[::-1], 4)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cubeling.app.workshop.reproduction import ik_figures, ik_methods
+from cubeling.app.workshop.reproduction.bodies import ik_figures, ik_methods
 from cubeling.characters.ik.solvers.solving import SOLVERS
 
 

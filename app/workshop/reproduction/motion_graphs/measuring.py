@@ -1,4 +1,4 @@
-"""The tables and curves of chapter 3.5 of the thesis, measured on four clips: not yet shown."""
+"""The tables and curves of chapter 3.5 of the thesis, measured on four clips."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from cubeling.app.counted import quantity
-from cubeling.app.workshop.motion_graphs.printed import CRITICAL, TABLE_3_2
+from cubeling.app.workshop.reproduction.motion_graphs.printed import CRITICAL, TABLE_3_2
 from cubeling.characters import CharacterError
 from cubeling.characters.motion import (
     PRINTED_COSTS,
@@ -39,6 +39,9 @@ INNER_TARGETS = 6
 
 Key: TypeAlias = tuple[str, str, str]
 """Table, row and column of a value."""
+
+Curves: TypeAlias = dict[str, tuple[Array, Array]]
+"""Thresholds and values, by split profile."""
 
 Value: TypeAlias = float | str | None
 """A number, the name of a profile, or nothing where no request was answered."""
@@ -84,10 +87,10 @@ class Measurement:
     pairs: dict[str, tuple[int, int, int]] = field(default_factory=dict)
     """Of table 3.3: in how many pairs the parts are shorter, and sooner, and how many there are."""
 
-    connectivity: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    connectivity: Curves = field(default_factory=dict)
     """Thresholds and shares of frames, by profile."""
 
-    cost: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    cost: Curves = field(default_factory=dict)
     """Thresholds and mean costs of a transition, by profile; only where clips are joined."""
 
 

@@ -1,10 +1,8 @@
 """Table 5.2 of Egges 2006: which of Ekman's six faces shows each of 24 emotions."""
 
-from pathlib import Path
-
 from cubeling.affect import OCC_FACES
-from cubeling.app.workshop.reproduction.registry import Progress
-from cubeling.app.workshop.reproduction.result import Reproduction, ResultTable
+from cubeling.app.workshop.pages.report_table import ReportTable
+from cubeling.app.workshop.reproduction.result import Reproduction, ReproductionRequest
 
 PRINTED_FACES = {
     "happy": (
@@ -29,7 +27,7 @@ PRINTED_FACES = {
 """The emotions of each face, as printed."""
 
 
-def reproduce(folder: Path | None, progress: Progress) -> Reproduction:
+def reproduce(request: ReproductionRequest) -> Reproduction:
     """Return the table beside the faces that characters show."""
     rows = []
     for face, emotions in PRINTED_FACES.items():
@@ -37,7 +35,7 @@ def reproduce(folder: Path | None, progress: Progress) -> Reproduction:
         rows.append((face, ", ".join(sorted(emotions)), ", ".join(sorted(ours))))
     same = all(printed == ours for _, printed, ours in rows)
     return Reproduction(
-        (ResultTable("Emotions of each face", ("face", "printed", "ours"), tuple(rows)),),
+        (ReportTable("Emotions of each face", ("face", "printed", "ours"), tuple(rows)),),
         "the table of words in cubeling.affect",
         "nothing." if same else "Our table has other faces for some emotions.",
     )

@@ -1,17 +1,16 @@
 """Table 7.1 of Huang 2013: iterations and time of solvers of inverse kinematics."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
-from cubeling.app.workshop.reproduction.ik_figures import (
+from cubeling.app.workshop.pages.report_table import ReportTable
+from cubeling.app.workshop.reproduction.bodies.ik_figures import (
     CHAIN_SIZES,
     AloneFigures,
     SureFigures,
     measure_alone,
     measure_sure,
 )
-from cubeling.app.workshop.reproduction.registry import Progress
-from cubeling.app.workshop.reproduction.result import Reproduction, ResultTable
+from cubeling.app.workshop.reproduction.result import Reproduction, ReproductionRequest
 from cubeling.characters.motion import SOLVERS, TOLERANCE
 
 PRINTED: dict[str, dict[int, tuple[float, float]]] = {
@@ -28,12 +27,12 @@ TARGETS = 1000
 """Random targets of each row: ends of random postures within the limits."""
 
 
-def reproduce(folder: Path | None, progress: Progress) -> Reproduction:
+def reproduce(request: ReproductionRequest) -> Reproduction:
     """Return the table, and that of solvers with what all share, beside the printed figures."""
     alone, sure = [], []
     for joints in CHAIN_SIZES:
         for method in SOLVERS:
-            progress(f"{method}, {joints} joints")
+            request.progress(f"{method}, {joints} joints")
             alone.append(measure_alone(method, joints, TARGETS))
             sure.append(measure_sure(method, joints, TARGETS))
     return Reproduction(
@@ -49,7 +48,7 @@ def reproduce(folder: Path | None, progress: Progress) -> Reproduction:
     )
 
 
-def printed_table(figures: Sequence[AloneFigures]) -> ResultTable:
+def printed_table(figures: Sequence[AloneFigures]) -> ReportTable:
     """Return the table as printed, with what the methods do alone."""
     rows = []
     for each in figures:
@@ -65,10 +64,10 @@ def printed_table(figures: Sequence[AloneFigures]) -> ResultTable:
             )
         )
     columns = "alone", "joints", "printed steps", "steps", "printed ms", "ms"
-    return ResultTable("Table 7.1 again", columns, tuple(rows))
+    return ReportTable("Table 7.1 again", columns, tuple(rows))
 
 
-def alone_table(figures: Sequence[AloneFigures]) -> ResultTable:
+def alone_table(figures: Sequence[AloneFigures]) -> ReportTable:
     """Return what else the methods do alone."""
     rows = tuple(
         (
@@ -87,10 +86,10 @@ def alone_table(figures: Sequence[AloneFigures]) -> ResultTable:
         *("alone", "joints", "µs in a batch", "solved", "in limits", "change"),
         *("zig-zag", "twist per cm"),
     )
-    return ResultTable("How well they solve", columns, rows)
+    return ReportTable("How well they solve", columns, rows)
 
 
-def sure_table(figures: Sequence[SureFigures]) -> ResultTable:
+def sure_table(figures: Sequence[SureFigures]) -> ReportTable:
     """Return what the methods do with what all share."""
     rows = tuple(
         (
@@ -110,4 +109,4 @@ def sure_table(figures: Sequence[SureFigures]) -> ResultTable:
         *("begun by", "joints", "steps", "µs in a batch", "solved", "beyond limits"),
         *("change", "zig-zag", "twist per cm"),
     )
-    return ResultTable("Within limits, made sure", columns, rows)
+    return ReportTable("Within limits, made sure", columns, rows)

@@ -1,13 +1,11 @@
 """Table 4.2 of Fernández-Baena 2015: how well a gesture graph is connected, by threshold."""
 
-from importlib.resources import as_file, files
-from pathlib import Path
-
 import numpy as np
 
-from cubeling.app.workshop.reproduction.registry import Progress
-from cubeling.app.workshop.reproduction.result import Reproduction, ResultTable
-from cubeling.characters.motion import GestureLibrary, sweep
+from cubeling.app.workshop.pages.report_table import ReportTable
+from cubeling.app.workshop.reproduction.gesturing.spoken import LIBRARY, bundled_library
+from cubeling.app.workshop.reproduction.result import Reproduction, ReproductionRequest
+from cubeling.characters.motion import sweep
 
 PRINTED_ROWS = {
     0.3: (0.92, 18, 1.22),
@@ -24,18 +22,14 @@ PRINTED_ROWS = {
 PRINTED_PHRASES = 261
 """Gesture phrases of the thesis's library."""
 
-LIBRARY = "human.gestures"
-"""The bundled library of the human, whose phrases our own generator made."""
-
 
 _FINE_THRESHOLDS = tuple(np.geomspace(1e-3, 10.0, 241).tolist())
 """Among which the least is looked for that joins all phrases."""
 
 
-def reproduce(folder: Path | None, progress: Progress) -> Reproduction:
+def reproduce(request: ReproductionRequest) -> Reproduction:
     """Return the table of the bundled library beside the printed one."""
-    with as_file(files("cubeling.characters") / "assets" / LIBRARY) as path:
-        library = GestureLibrary.load(path)
+    library = bundled_library()
     count = len(library.phrases)
     joined = next(
         (row.threshold for row in sweep(library, _FINE_THRESHOLDS) if row.component == count), 1.0
@@ -67,7 +61,7 @@ def reproduce(folder: Path | None, progress: Progress) -> Reproduction:
     )
     caption = f"{PRINTED_PHRASES} phrases (printed) and {count} (ours)"
     return Reproduction(
-        (ResultTable(caption, columns, tuple(rows)),),
+        (ReportTable(caption, columns, tuple(rows)),),
         f"the bundled library '{LIBRARY}': {count} phrases by our own generator",
         "Thresholds depend on the library and on the convention of angles: ours are the printed "
         f"multiples of the least that joins all phrases, {joined:.2g} (printed: 1). With {count} "

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cubeling.app.workshop.motion_graphs.printed import (
+from cubeling.app.workshop.reproduction.motion_graphs.measuring import Key, Measurement, Value
+from cubeling.app.workshop.reproduction.motion_graphs.printed import (
     CRITICAL,
     SHORTER_AND_SOONER,
     TABLE_3_2,
     TABLE_3_3,
     TABLE_3_4,
 )
-from cubeling.app.workshop.motion_graphs.tables import Key, Measurement, Value
 from cubeling.characters.motion import Array
 
 TITLES = {

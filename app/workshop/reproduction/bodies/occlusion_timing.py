@@ -1,4 +1,4 @@
-"""Time of ambient occlusion on this machine's driver: Table 3.1 of Huang 2013."""
+"""Time of ambient occlusion on this machine's driver, and how it grows with the samples."""
 
 import time
 from collections.abc import Mapping
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from cubeling.characters.rendering.deferred.ambient_occlusion import (
+from cubeling.app.workshop.reproduction.bodies.occlusion_buffer import GBuffer
+from cubeling.characters.rendering import (
     AmbientOcclusion,
     AmbientOcclusionSettings,
+    ShaderPrograms,
 )
-from cubeling.characters.rendering.programs import ShaderPrograms
-from tests.bench.ambient_occlusion.scoring import GBuffer
 
 ROUNDS = 7
 """How often every variant is drawn; the least time counts, as other work only adds to it."""

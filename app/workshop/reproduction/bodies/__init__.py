@@ -1,0 +1,1 @@
+"""How bodies are solved, moved and lit: Huang 2013."""

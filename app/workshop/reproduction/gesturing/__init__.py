@@ -1,0 +1,1 @@
+"""How gestures follow speech: chapters 4 and 8 of Fernández-Baena 2015."""

@@ -1,0 +1,1 @@
+"""How people stand and feel: Egges 2006."""
