@@ -100,12 +100,16 @@ def gesture_votes(request: ReproductionRequest) -> Reproduction:
         f"124 are 8.1 %, printed as 8.0. {NOT_PEOPLE} The films are not public. Only the text "
         "about the figures is left: box plots of the scores.",
         (
-            Plot("Figure 4.13: scores of the conditions against each other, counted",
-                 partial(_draw_votes, gesture_and_speech.COUNTS, False)),
-            Plot("Figure 4.14: scores against the original, counted",
-                 partial(_draw_votes, gesture_and_speech.COUNTS, True)),
+            Plot(
+                "Figure 4.13: scores of the conditions against each other, counted",
+                partial(_draw_votes, gesture_and_speech.COUNTS, False),
+            ),
+            Plot(
+                "Figure 4.14: scores against the original, counted",
+                partial(_draw_votes, gesture_and_speech.COUNTS, True),
+            ),
         ),
-    )  # fmt: skip
+    )
 
 
 def vleo_and_pleo(request: ReproductionRequest) -> Reproduction:
@@ -196,11 +200,17 @@ def facial_actions(request: ReproductionRequest) -> Reproduction:
         f"{NOT_PEOPLE} They judge by an ordinal model whose means are the printed ones. Each "
         "factor is printed by itself, so that the simulated ones have no interaction. "
         "cubeling study faces draws the 128 stimuli with our renderer.",
-        (Plot("Table 4.3: identified at high and at low intensity",
-              partial(_draw_actions, tables[0])),
-         Plot("Table 4.4: identified in animations and in pictures",
-              partial(_draw_actions, tables[1])),),
-    )  # fmt: skip
+        (
+            Plot(
+                "Table 4.3: identified at high and at low intensity",
+                partial(_draw_actions, tables[0]),
+            ),
+            Plot(
+                "Table 4.4: identified in animations and in pictures",
+                partial(_draw_actions, tables[1]),
+            ),
+        ),
+    )
 
 
 def _share(
@@ -235,8 +245,13 @@ def _draw_answers(sheet: "Figure") -> None:
     axes = sheet.subplots()
     rows = (("is Pleo happy?", children.HAPPY_COUNTS), ("is Pleo angry?", children.ANGRY_COUNTS))
     for number, (_, counts) in enumerate(rows):
-        axes.bar([place + 0.4 * number - 0.2 for place in range(1, 6)], counts, 0.36,
-                 color=CURVE_STYLES[number + 1][0], label=rows[number][0])  # fmt: skip
+        axes.bar(
+            [place + 0.4 * number - 0.2 for place in range(1, 6)],
+            counts,
+            0.36,
+            color=CURVE_STYLES[number + 1][0],
+            label=rows[number][0],
+        )
     axes.set_xticks(range(1, 6), ["1 not at all", "2", "3", "4", "5 very"])
     axes.set_ylabel("children, printed")
     axes.legend(loc="upper left")
@@ -246,10 +261,23 @@ def _draw_times(times: Mapping[str, Sequence[float]], sheet: "Figure") -> None:
     axes = sheet.subplots()
     for row, (task, own) in enumerate(times.items()):
         mean, spread = children.MEAN_S[row], children.DEVIATION_S[row]
-        axes.errorbar([mean], [row + 0.15], xerr=[spread], fmt="s", color=SECONDARY_COLOR,
-                      capsize=4, label="printed: mean ± SD" if not row else None)  # fmt: skip
-        axes.plot(own, [row - 0.15] * len(own), "o", alpha=0.6, color=CURVE_STYLES[2][0],
-                  label="simulated" if not row else None)  # fmt: skip
+        axes.errorbar(
+            [mean],
+            [row + 0.15],
+            xerr=[spread],
+            fmt="s",
+            color=SECONDARY_COLOR,
+            capsize=4,
+            label="printed: mean ± SD" if not row else None,
+        )
+        axes.plot(
+            own,
+            [row - 0.15] * len(own),
+            "o",
+            alpha=0.6,
+            color=CURVE_STYLES[2][0],
+            label="simulated" if not row else None,
+        )
         del task
     axes.set_yticks(range(len(times)), list(times))
     axes.set_xlabel("time [s]")
@@ -268,17 +296,26 @@ def _draw_preference(sheet: "Figure") -> None:
 def _draw_actions(shown: ReportTable, sheet: "Figure") -> None:
     """Draw the identification at both levels of a factor: printed, and simulated."""
     axes = sheet.subplots()
-    identified = [(*row[0].removesuffix(": EXP").split(", "), *map(float, row[1:]))
-                  for row in shown.rows if row[0].endswith(": EXP")]  # fmt: skip
+    identified = [
+        (
+            *row[0].removesuffix(": EXP").split(", "),
+            *(float(c.replace("–", "nan")) for c in row[1:]),
+        )
+        for row in shown.rows
+        if row[0].endswith(": EXP")
+    ]
     actions = list(dict.fromkeys(action for action, *_ in identified))
     levels = list(dict.fromkeys(level for _, level, *_ in identified))
     for marker, level in zip("^v", levels, strict=True):
         own = [row for row in identified if row[1] == level]
-        for column, shift, who, color in ((2, -0.08, "printed", SECONDARY_COLOR),
-                                          (3, 0.08, "simulated", CURVE_STYLES[2][0])):  # fmt: skip
+        for column, shift, who, color in (
+            (2, -0.08, "printed", SECONDARY_COLOR),
+            (3, 0.08, "simulated", CURVE_STYLES[2][0]),
+        ):
             places = [place + shift for place in range(len(actions))]
-            axes.plot(places, [row[column] for row in own], marker, color=color,
-                      label=f"{who}, {level}")  # fmt: skip
+            axes.plot(
+                places, [row[column] for row in own], marker, color=color, label=f"{who}, {level}"
+            )
     axes.set_xticks(range(len(actions)), actions)
     axes.set_ylabel("identification, 1…5")
     axes.set_ylim(1.0, 5.0)

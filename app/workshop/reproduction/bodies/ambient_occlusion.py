@@ -152,23 +152,35 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
     )
     name, samples = SHOWN
     return Reproduction(
-        (_times(took), _fits(took),
-         ReportTable(f"Figure 3.10: full and separable form, {name}, k = {samples}",
-                     ("", "printed", "ours"), differences)),
+        (
+            _times(took),
+            _fits(took),
+            ReportTable(
+                f"Figure 3.10: full and separable form, {name}, k = {samples}",
+                ("", "printed", "ours"),
+                differences,
+            ),
+        ),
         f"fifteen spheres on a floor, {size[0]}×{size[1]}, {renderer}; the blur is in it; "
         f"{'time of all cores' if software else 'by timer queries'}, the least of {ROUNDS}",
         "Printed: a GeForce GTX 480, 1024×768, scenes of 50,000 triangles; the time depends on the "
         "picture, not on them. Compare how much faster the separable form is, and that it grows "
         "with k where the full one grows with k². "
         + ("Here the processor draws, and on fewer pixels. " if software else "")
-        + "Of figure 3.10, made by Yee's measure, only \"remains low\" is printed; ours is ΔE76.",
+        + 'Of figure 3.10, made by Yee\'s measure, only "remains low" is printed; ours is ΔE76.',
         (
-            Plot("Table 3.1: time by k, over that of the full form with k = 5",
-                 partial(_draw_times, took)),
-            Plot(f"Figure 3.10: {name}, k = {samples}; full, separable, and their difference "
-                 "in Lab (white: none)", partial(_draw_pictures, pictures, apart), (8.8, 2.4)),
+            Plot(
+                "Table 3.1: time by k, over that of the full form with k = 5",
+                partial(_draw_times, took),
+            ),
+            Plot(
+                f"Figure 3.10: {name}, k = {samples}; full, separable, and their difference "
+                "in Lab (white: none)",
+                partial(_draw_pictures, pictures, apart),
+                (8.8, 2.4),
+            ),
         ),
-    )  # fmt: skip
+    )
 
 
 def _times(took: Mapping[Variant, float]) -> ReportTable:
@@ -222,15 +234,27 @@ def _draw_times(took: Mapping[Variant, float], sheet: "Figure") -> None:
             form = "separable" if separable else "full"
             theirs = [printed[each][separable] / printed[5][0] for each in SAMPLES]
             ours = [took[name, each, separable] / took[name, 5, False] for each in SAMPLES]
-            axes.plot(SAMPLES, theirs, marker, linestyle="-", color=SECONDARY_COLOR,
-                      label=f"printed, {form}")  # fmt: skip
-            axes.plot(SAMPLES, ours, marker, linestyle="--",
-                      color=CURVE_STYLES[2 if separable else 1][0],
-                      label=f"ours, {form}")  # fmt: skip
+            axes.plot(
+                SAMPLES,
+                theirs,
+                marker,
+                linestyle="-",
+                color=SECONDARY_COLOR,
+                label=f"printed, {form}",
+            )
+            axes.plot(
+                SAMPLES,
+                ours,
+                marker,
+                linestyle="--",
+                color=CURVE_STYLES[2 if separable else 1][0],
+                label=f"ours, {form}",
+            )
         axes.set_title(name)
         axes.set_xticks(SAMPLES)
         axes.set_xlabel("k")
     panels[0].set_yscale("log")
+    panels[0].yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     panels[0].set_ylabel("time ÷ that of full, k = 5")
     panels[0].legend(fontsize=8)
 

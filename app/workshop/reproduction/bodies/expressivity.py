@@ -77,7 +77,7 @@ def play(body: Character, how: GestureExpressivity, rate: float = RATE_HZ) -> Pl
     left, right, chest = (body.anatomy.joint(name) for name in names)
     poses = [player.update(number / rate).posed.pose for number in range(int(end * rate))]
     placed = np.stack([pose.globals(body.skeleton) for pose in poses])
-    wrists = placed[:, [left, right], :3, 3] * PERSON_M / body.height
+    wrists = placed[:, [left, right]][..., :3, 3] * PERSON_M / body.height
     turned = placed[:, chest, :3, :3] @ placed[0, chest, :3, :3].T
     cosines = (np.trace(turned, axis1=1, axis2=2) - 1.0) / 2.0
     return PlayedGesture(tuple(poses), wrists, np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))))
@@ -106,12 +106,18 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         "which settings it shows is not known. Openness, fluidity, bias and tension are as written "
         "here: python -m tests.bench.expressivity has what each slider moves.",
         (
-            Plot("Figure 8.13, ours: small and weak above, large and powerful below",
-                 partial(_draw_strips, body, shown), (8.8, 5.2)),
-            Plot("Paths of the wrists from the front, and speed of the right one",
-                 partial(_draw_paths, shown), (8.8, 3.2)),
+            Plot(
+                "Figure 8.13, ours: small and weak above, large and powerful below",
+                partial(_draw_strips, body, shown),
+                (8.8, 5.2),
+            ),
+            Plot(
+                "Paths of the wrists from the front, and speed of the right one",
+                partial(_draw_paths, shown),
+                (8.8, 3.2),
+            ),
         ),
-    )  # fmt: skip
+    )
 
 
 def _draw_strips(body: Character, shown: Mapping[str, PlayedGesture], sheet: "Figure") -> None:

@@ -71,6 +71,7 @@ def accents_for(
     if condition == "random":
         # Sorted free room, with the least gap before each: uniform, and never too close.
         room = max(duration - LEAST_GAP_S * len(accents), 0.0)
-        times = (np.sort(rng.uniform(0.0, room, len(accents)))
-                 + LEAST_GAP_S * np.arange(len(accents))).tolist()  # fmt: skip
+        times = (
+            np.sort(rng.uniform(0.0, room, len(accents))) + LEAST_GAP_S * np.arange(len(accents))
+        ).tolist()
     return [Accent(*each) for each in zip(times, strengths, strict=True)]

@@ -134,6 +134,7 @@ def _draw(curves: Curves, label: str, figure: "Figure") -> None:
         style = {"color": color, "linestyle": (0, dashes or None), "marker": marker}
         axes.plot(thresholds, values, label=name, markersize=3.5, **style)
     axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.set_xlabel("threshold")
     axes.set_ylabel(label)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

@@ -270,10 +270,23 @@ def _spread(values: Array, words: Callable[..., str]) -> str:
 def _draw(found: dict[str, Judged], sheet: "Figure") -> None:
     axes = sheet.subplots()
     for row, each in enumerate(found.values()):
-        axes.plot(each.named, [row] * len(each.named), "o", color=CURVE_STYLES[2][0], alpha=0.5,
-                  label="a person" if not row else None)  # fmt: skip
-        axes.plot(each.named.mean(), row, "|", color="black", markersize=18, markeredgewidth=2.5,
-                  label="mean" if not row else None)  # fmt: skip
+        axes.plot(
+            each.named,
+            [row] * len(each.named),
+            "o",
+            color=CURVE_STYLES[2][0],
+            alpha=0.5,
+            label="a person" if not row else None,
+        )
+        axes.plot(
+            each.named.mean(),
+            row,
+            "|",
+            color="black",
+            markersize=18,
+            markeredgewidth=2.5,
+            label="mean" if not row else None,
+        )
     people, chance = whose_idle_motion.RECOGNISED, whose_idle_motion.CHANCE
     axes.axvline(people, color=SECONDARY_COLOR, label="printed: people")
     axes.axvline(chance, color=SECONDARY_COLOR, linestyle=":", label="chance")

@@ -83,6 +83,7 @@ def neighbour_curves(sets: Sequence[Array]) -> NeighbourCurves:
 def _squares(rows: Array) -> Array:
     squares = (rows**2).sum(1)
     found: Array = np.maximum(squares[:, None] + squares - 2.0 * rows @ rows.T, 0.0)
+    np.fill_diagonal(found, 0.0)  # which rounding leaves near it
     return found
 
 
@@ -118,12 +119,17 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         "80 % are nearer to no weights at all (specification, S5). Errors with weights are in "
         "other units than the printed ones. Consecutive frames are in a set, as there.",
         (
-            Plot("Figures 3.3 to 3.5: success, mean and greatest error by the number of "
-                 "components", partial(_draw_curves, curves)),
-            Plot("Figure 3.6: pairs of postures at the printed distances (no weights)",
-                 partial(_draw_pairs, kind, chosen, coordinates), (8.8, 3.0)),
+            Plot(
+                "Figures 3.3 to 3.5: success, mean and greatest error by the number of components",
+                partial(_draw_curves, curves),
+            ),
+            Plot(
+                "Figure 3.6: pairs of postures at the printed distances (no weights)",
+                partial(_draw_pairs, kind, chosen, coordinates),
+                (8.8, 3.0),
+            ),
         ),
-    )  # fmt: skip
+    )
 
 
 def _rows(curves: NeighbourCurves) -> tuple[tuple[str, ...], ...]:
@@ -144,8 +150,13 @@ def _draw_curves(curves: Mapping[str, NeighbourCurves], sheet: "Figure") -> None
     panels = sheet.subplots(1, 3)
     for (mode, own), (color, dashes) in zip(curves.items(), CURVE_STYLES, strict=False):
         for axes, values in zip(panels, (own.success, own.mean_error, own.max_error), strict=True):
-            axes.plot(np.arange(1, len(values) + 1), values, color=color,
-                      linestyle=(0, dashes or None), label=f"weights: {WEIGHTS[mode]}")  # fmt: skip
+            axes.plot(
+                np.arange(1, len(values) + 1),
+                values,
+                color=color,
+                linestyle=(0, dashes or None),
+                label=f"weights: {WEIGHTS[mode]}",
+            )
     for axes, name, printed in zip(
         panels, ("success", "mean error", "greatest error"), (0.8, 0.1, 0.4), strict=True
     ):
