@@ -8,7 +8,7 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo setup test test-all test-rest campaign campaign-tenth check check-format check-lint check-licences links check-floors check-types licences audit docs package bench bench-tracking bench-photographs recordings assets pictures cast clean
+.PHONY: demo setup test test-all test-rest campaign campaign-tenth check check-format check-lint check-licences links check-floors check-types licences audit docs package bench bench-tracking bench-photographs reproduce recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
@@ -117,7 +117,6 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.mocap
 	$(BIN)/python -m tests.bench.retarget
 	$(BIN)/python -m tests.bench.motion_graphs --choices 6
-	$(BIN)/python -m tests.bench.motion_graphs --tables --choices 6
 	$(BIN)/python -m tests.bench.loading
 	$(BIN)/python -m tests.bench.feet
 	$(BIN)/python -m tests.bench.matching
@@ -167,6 +166,10 @@ bench-photographs: .venv/ready-dev  ## compare the cube's tracker with OpenCV on
 	$(BIN)/python -m tests.bench.photographs
 	$(BIN)/python -m tests.bench.photographs.sequence
 	$(BIN)/python -m tests.bench.photographs.hands
+
+reproduce: .venv/ready-dev  ## the printed tables and figures of the theses, made again into out/report/; minutes
+	mkdir -p out
+	$(BIN)/cubeling reproduce $(if $(wildcard ../shared/data),--data ../shared/data) -o out/report --overwrite
 
 recordings: .venv/ready-dev  ## record the bundled sessions again
 	$(BIN)/python -m tools.recordings

@@ -56,9 +56,10 @@ GROUPS = {
         "stays as it was.",
         "anonymise": "Blur the pictures of a session outside the cubes and the table around them.",
         "study": "Run a study: orders, tasks, questionnaires, simulated participants, a report.",
+        "stimuli": "Make the films that bundled studies show, from recordings of your own.",
         "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
         "speech": "Look at recorded speech: its pitch, accents, words and phones.",
-        "reproduce": "Make the printed tables of the four works again, beside what they print.",
+        "reproduce": "Make printed tables and figures of the theses again, beside what they print.",
     },
     "Robots": {
         "robot": "Simulate, try out and test robots, and list the serial ports.",

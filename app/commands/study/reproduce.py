@@ -45,10 +45,10 @@ def reproduce(
         bool, typer.Option("--overwrite", help="Overwrite an earlier page.")
     ] = False,
 ) -> None:
-    """Make the printed tables and figures of the theses again, beside what they print.
+    """Make printed tables and figures of the theses again, beside what they print.
 
     A table that cannot be made says why: some need recordings, some were made from what nobody
-    published. The plots of the page need matplotlib, the reports of studies SciPy.
+    published. The plots of the page need matplotlib.
 
     Example: cubeling reproduce ik-methods gesture-graph -o report
     """

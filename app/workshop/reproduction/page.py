@@ -62,7 +62,7 @@ def write_report(attempts: Sequence[Attempt], folder: Path) -> None:
     parts = [
         heading(TITLE, 1),
         paragraph(
-            "What four published works print, in grey, beside what this program gives. "
+            "What three theses print, in grey, beside what this program gives. "
             f"{made} of {len(attempts)} could be made here, in {duration(total)}."
         ),
         _contents(attempts),

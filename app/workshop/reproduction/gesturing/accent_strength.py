@@ -78,10 +78,10 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         "accent is the vowel that our recogniser hears there; 95 % intervals by the bootstrap",
         "The labels of two experts, from which the tables were computed, were not published. Ours "
         "are another question: whether an accent is of an angry or joyful recording, not of a "
-        "neutral or sad one. These recordings differ by 3 dB at most, and even an angry speaker has weak "
-        "accents, so that little can be told from strength; with so few accents, no order of the "
-        "measures can be. Classifiers have nothing to learn from here. For accents whose strength "
-        "is planted: python -m tests.bench.accents.",
+        "neutral or sad one. These recordings differ by 3 dB at most, and even an angry speaker "
+        "has weak accents, so that little can be told from strength; with so few accents, no order "
+        "of the measures can be. Classifiers have nothing to learn from here. For accents whose "
+        "strength is planted: python -m tests.bench.accents.",
     )
 
 

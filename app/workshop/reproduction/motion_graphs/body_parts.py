@@ -37,7 +37,7 @@ CHOICES = (
 )
 """Recordings of a walk, a run, a walk with long steps and a slow walk: subject and take."""
 
-STRIDE = 16
+STRIDE = 32
 """Frames from one request to the next."""
 
 DIFFERS = """The clips of the thesis are not public, and thresholds depend on clips and on the

@@ -214,7 +214,7 @@ def _unmasked(real: list[Array], made: list[Array], person: int) -> tuple[float,
 
 def reproduce(request: ReproductionRequest) -> Reproduction:
     """Return the printed rates beside those of classifiers."""
-    people, kind = read_people(request)
+    people, kind = read_people(request.folder("idle"), request.progress)
     request.progress("judging windows")
     found = study(people, kind)
     generated, recorded = found["generated"], found["recorded"]

@@ -96,7 +96,7 @@ def _nearest(squares: Array) -> "np.ndarray[tuple[int], np.dtype[np.intp]]":
 
 def reproduce(request: ReproductionRequest) -> Reproduction:
     """Return success and errors by the number of components, beside what the thesis says."""
-    people, kind = read_people(request, SETS)
+    people, kind = read_people(request.folder("idle"), request.progress, SETS)
     chosen = [
         each.vectors[np.linspace(0, len(each.vectors) - 1, FRAMES).astype(int)] for each in people
     ]
