@@ -19,6 +19,7 @@ from cubeling.app.commands.play.play_options import (
     IntrinsicsOption,
     LanguageOption,
     PersonalityOption,
+    PlayersOption,
     QualityOption,
     RecordOption,
     RobotsOption,
@@ -27,7 +28,7 @@ from cubeling.app.commands.play.play_options import (
 )
 from cubeling.app.commands.play.preference_options import DEFAULT_FILE, GivenPreferences
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.choices import cast_of, robots_of
+from cubeling.app.pipeline.choices import cast_of, checked_players, robots_of
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario, scenario_names
 
@@ -76,6 +77,7 @@ def serve(
             help="phone, the camera of whoever opens the page; or another, as in cubeling play.",
         ),
     ] = PHONE,
+    players: PlayersOption = 1,
     cubes: CubesOption = None,
     character: CharacterOption = None,
     cast: CastOption = None,
@@ -117,7 +119,7 @@ def serve(
     from cubeling.app.session import SessionOptions
 
     first, others = cast_of(cast, character)
-    (robot, _), robot_names = robots_of(robots or (), 1)
+    (robot, second_robot), robot_names = robots_of(robots or (), players)
     record_codec, _ = codecs_of(codec, record, None)
     options = SessionOptions(
         scenario=scenario,
@@ -125,11 +127,13 @@ def serve(
         cubes=tuple(cubes or ()),
         character=first,
         others=others,
+        players=checked_players(players),
         personality=personality,
         language=language,
         intrinsics=intrinsics,
         quality=checked_quality(quality),
         robot=robot,
+        second_robot=second_robot,
         robot_names=robot_names,
         record=record,
         codec=record_codec,

@@ -31,11 +31,10 @@ class Said(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A message in JSON from a page."""
 
     do: Literal[
-        "tick", "shown", "camera", "stop", "play", "again", "inside", "snapshot", "record",
-        "mark", "mirror",
+        "tick", "shown", "camera", "play", "again", "snapshot", "record", "mark"
     ]  # fmt: skip
-    """What it says: that it is there, that it has shown a picture, that its camera begins or stops;
-    or what the player asks for."""
+    """What it says: that it is there, that it has shown a picture, that it has a camera; or what
+    the player asks for."""
 
     id: int = 0
     """Number of the picture that was shown."""
@@ -43,8 +42,11 @@ class Said(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     name: str = ""
     """The camera ("ab12-back"), or the scenario."""
 
-    on: bool = False
-    """Whether the picture is to be as in a mirror."""
+    mirror: bool = False
+    """Whether the picture of its camera is to be as in a mirror."""
+
+    take: bool = False
+    """Whether its camera takes the place of another page's."""
 
 
 _decoder = msgspec.json.Decoder(Said)

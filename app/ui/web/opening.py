@@ -67,6 +67,9 @@ def open_server(
     }
     server = WebServer(listeners, token, welcome)
     server.fingerprint = fingerprint
+    if lan:
+        # Who plays shows it to one more phone.
+        server.invite(segno.make(_address(server, token), error="l").svg_data_uri(border=2))
     server.tiles = [
         pack(TILE, number, 0.0, encoded(scenario_picture(name, TILE_WIDTH_PX)))
         for number, name in enumerate(names)
@@ -81,8 +84,7 @@ def page_address(server: WebServer, token: Token) -> Iterator[str]:
         yield f"Open this in a browser of this computer: [bold cyan]{escape(own)}[/]"
         yield "[dim]A phone? Add [cyan]--lan[/]. Ctrl-C ends.[/]"
         return
-    host, port, own_port = server.listeners[1].host, server.ports[1], server.ports[0]
-    address = f"https://{host}:{port}/#{token.text}"
+    own_port, address = server.ports[0], _address(server, token)
     drawn = io.StringIO()
     segno.make(address, error="l", micro=False).terminal(drawn, compact=True)
     yield escape(drawn.getvalue().rstrip("\n"))
@@ -96,6 +98,11 @@ def page_address(server: WebServer, token: Token) -> Iterator[str]:
         f"[dim]Without a warning, over USB: [cyan]adb reverse tcp:{own_port} tcp:{own_port}[/], "
         f"then {escape(own)} on the phone, or in a browser of this computer. Ctrl-C ends.[/]"
     )
+
+
+def _address(server: WebServer, token: Token) -> str:
+    """Return the address of the page in the network."""
+    return f"https://{server.listeners[1].host}:{server.ports[1]}/#{token.text}"
 
 
 def open_page_screen(

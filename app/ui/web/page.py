@@ -1,43 +1,65 @@
-"""The page: one document, made of its parts, that loads nothing from elsewhere."""
+"""The documents that a browser gets: each is one file that loads nothing from elsewhere."""
 
 import base64
 import hashlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
+from importlib.resources.abc import Traversable
 
 MAX_PAGE_BYTES = 30_000
 """Size of the page [B]: it is there at once on any network."""
 
-
-def _part(name: str) -> str:
-    return (resources.files("cubeling.app.ui.web") / "page" / name).read_text("utf-8")
-
-
-@lru_cache(maxsize=1)
-def page() -> bytes:
-    """Return the page in UTF-8, with its style and its script in it."""
-    document = _part("page.html")
-    for place, name in (("/*STYLE*/", "page.css"), ("/*SCRIPT*/", "page.js")):
-        document = document.replace(place, _part(name))
-    return document.encode()
+SCRIPTS = ("words.js", "base.js", "link.js", "picture.js", "camera.js", "sound.js", "touch.js")
+"""The parts of the page's script, in their order."""
 
 
-def _hash(name: str) -> str:
-    return (
-        "'sha256-" + base64.b64encode(hashlib.sha256(_part(name).encode()).digest()).decode() + "'"
-    )
+@dataclass(frozen=True)
+class Document:
+    """A page in HTML, and what is sent with it."""
+
+    body: bytes
+    """It, in UTF-8, with its style and its script in it."""
+
+    headers: Mapping[str, str]
+    """Of HTTP: it runs its own script only, and nothing frames it."""
 
 
-@lru_cache(maxsize=1)
-def page_headers() -> dict[str, str]:
-    """Return the headers of the document: it runs its own script only, and nothing frames it."""
-    return {
+def document(
+    name: str, styles: Iterable[str], scripts: Iterable[str], folder: Traversable | None = None
+) -> Document:
+    """Return a document made of files of a folder; None for that of the page.
+
+    In the HTML file `name`, the styles go where it says /*STYLE*/, the scripts where /*SCRIPT*/.
+    """
+    where = folder or resources.files("cubeling.app.ui.web") / "page"
+
+    def joined(names: Iterable[str]) -> str:
+        text = "".join((where / each).read_text("utf-8") for each in names)
+        return "\n".join(map(str.strip, text.splitlines()))  # a browser needs no indents
+
+    style, script = joined(styles), joined(scripts)
+    html = joined([name]).replace("/*STYLE*/", style).replace("/*SCRIPT*/", script)
+    headers = {
+        "Content-Type": "text/html; charset=utf-8",
         "Content-Security-Policy": "default-src 'none'; connect-src 'self'; img-src 'self' blob: "
-        f"data:; media-src 'self' blob:; style-src {_hash('page.css')}; "
-        f"script-src {_hash('page.js')}; base-uri 'none'; form-action 'none'; "
-        "frame-ancestors 'none'",
+        f"data:; media-src 'self' blob:; style-src {_hash(style)}; script-src {_hash(script)}; "
+        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
         "Permissions-Policy": "camera=(self), microphone=(), geolocation=()",
         "Referrer-Policy": "no-referrer",
         "X-Content-Type-Options": "nosniff",
         "Cache-Control": "no-store",
     }
+    return Document(html.encode(), headers)
+
+
+@lru_cache(maxsize=1)
+def page() -> Document:
+    """Return the page that plays."""
+    return document("page.html", ["page.css"], SCRIPTS)
+
+
+def _hash(text: str) -> str:
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode()}'"

@@ -152,6 +152,7 @@ class WebScreen:
             "scenario": status.scenario,
             "recording": status.recording,
             "notice": None if notice is None else [notice.title, notice.advice],
+            "hint": "" if self._shown is None else self._shown[0].outcome.hint,
         }
         recording = status.recording is not None
         known = {**told, "recording": recording} == {
@@ -170,10 +171,6 @@ class WebScreen:
         self._inputs = replace(self._inputs, clear=True)
         return ()
 
-    def _inside(self, _: Said) -> tuple[SessionRequest, ...]:
-        self._inputs = replace(self._inputs, inside=not self._inputs.inside)
-        return ()
-
     def _snapshot(self, _: Said) -> tuple[SessionRequest, ...]:
         if self._shown is not None and self._shown[0].picture is not None:
             picture = self._with_cards(*self._shown)
@@ -181,16 +178,15 @@ class WebScreen:
         return ()
 
     def _mirror(self, said: Said) -> tuple[SessionRequest, ...]:
-        self._mirrored = said.on
+        self._mirrored = said.mirror
         return ()
 
 
 HANDLERS: dict[str, Callable[[WebScreen, Said], tuple[SessionRequest, ...]]] = {
     "play": WebScreen._play,
     "again": WebScreen._again,
-    "inside": WebScreen._inside,
     "snapshot": WebScreen._snapshot,
-    "mirror": WebScreen._mirror,
+    "camera": WebScreen._mirror,
     "record": lambda screen, said: (Record(),),
     "mark": lambda screen, said: (MarkMoment(),),
 }

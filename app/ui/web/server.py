@@ -9,7 +9,7 @@ import ssl
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Coroutine, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast, get_args
 from urllib.parse import urlsplit
@@ -21,8 +21,9 @@ from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
 from cubeling.app.ui.web.client import LAST_WORDS_S, PageClient, ShownPicture
 from cubeling.app.ui.web.limits import RateLimit, WebLimits
-from cubeling.app.ui.web.messages import CAMERA_ROLES, PLAYER_ROLES, Role, Said
-from cubeling.app.ui.web.page import page, page_headers
+from cubeling.app.ui.web.messages import PLAYER_ROLES, Role, Said
+from cubeling.app.ui.web.page import Document, page
+from cubeling.app.ui.web.place import CameraPlace
 from cubeling.tracking import ImageFeed
 
 LOOPBACK = "127.0.0.1"
@@ -31,11 +32,16 @@ LOOPBACK = "127.0.0.1"
 SOCKET_PATH, PROTOCOL = "/socket", "cubeling"
 """Where the WebSocket is, and its subprotocol; the token is offered as the other one."""
 
+TOKEN_PATH = "/token"
+"""Where a page that gets no WebSocket asks why: 403 for a wrong token, 503 without room."""
+
 PAGE_PATHS = ("/", "/view", "/window", "/camera")
 """One page, which looks at its address."""
 
-CAMERA_QUIET_S = 2.0
-"""A page whose camera sends nothing for so long gives its place up to another one [s]."""
+Route = Callable[[web.BaseRequest], Awaitable[web.StreamResponse]]
+"""Answers a request that tells the token, in the loop of the server."""
+
+REFUSED = "the token is missing or wrong\n"
 
 CHECK_EVERY_S = 0.5
 CONNECTIONS_PER_COLLECTION = 20
@@ -79,6 +85,10 @@ class WebServer:
         What clients may use.
     clock
         The time [s].
+    documents
+        Further pages, by their paths: anybody may read them.
+    routes
+        What answers at further paths, who tells the token: "Authorization: Bearer TOKEN".
 
     Raises
     ------
@@ -93,6 +103,9 @@ class WebServer:
         welcome: Mapping[str, object] | None = None,
         limits: WebLimits | None = None,
         clock: Callable[[], float] = time.monotonic,
+        *,
+        documents: Mapping[str, Document] | None = None,
+        routes: Mapping[str, Route] | None = None,
     ) -> None:
         self.feed = ImageFeed()
         """The pictures of the camera."""
@@ -104,12 +117,13 @@ class WebServer:
         """The scenarios' pictures, as messages."""
         self._token, self._limits, self._clock = token, limits or WebLimits(), clock
         self._welcome = dict(welcome or {})
+        self._documents = {**dict.fromkeys(PAGE_PATHS, page()), **(documents or {})}
+        self._routes = {TOKEN_PATH: self._why_refused, **(routes or {})}
         self._status: dict[str, object] = {}
         self._requests: deque[Said] = deque(maxlen=MAX_REQUESTS)
         self._clients: dict[str, PageClient] = {}
         self._strangers: dict[RequestHandler, float] = {}
-        self._owner: PageClient | None = None
-        self._seen = -float("inf")
+        self._place = CameraPlace(clock)
         self._tags: deque[tuple[bytes, str, float]] = deque(maxlen=64)
         self._connected = 0
         self._tasks: set[asyncio.Task[None]] = set()
@@ -128,6 +142,10 @@ class WebServer:
     def clients(self) -> tuple[str, ...]:
         """The pages that are connected now."""
         return tuple(self._clients)
+
+    def invite(self, code: str) -> None:
+        """Let pages that come from now on show a code, a picture as data: URL, to other phones."""
+        self._welcome["code"] = code
 
     def take_requests(self) -> list[Said]:
         """Return what players have asked for since the last call."""
@@ -241,6 +259,7 @@ class WebServer:
         for handler, since in tuple(self._strangers.items()):
             if handler.transport is None or now - since > self._limits.stranger_s:
                 self._drop(handler)
+        self._place.check()
         for client in tuple(self._clients.values()):
             if now - client.heard > self._limits.idle_s:
                 client.leave("nothing was heard of this page")
@@ -251,12 +270,25 @@ class WebServer:
             handler.transport.abort()
 
     async def _answer(self, request: web.BaseRequest) -> web.StreamResponse:
-        if request.method == "GET" and request.path in PAGE_PATHS:
-            return web.Response(body=page(), content_type="text/html", charset="utf-8",
-                                headers=page_headers())  # fmt: skip
+        document = self._documents.get(request.path)
+        if request.method == "GET" and document is not None:
+            return web.Response(body=document.body, headers=document.headers)
         if request.method == "GET" and request.path == SOCKET_PATH:
             return await self._welcome_page(request)
+        route = self._routes.get(request.path)
+        if route is not None:
+            scheme, _, offered = request.headers.get("Authorization", "").partition(" ")
+            if scheme != "Bearer" or not self._token.admits(offered):
+                return web.Response(status=403, text=REFUSED)
+            return await route(request)
         return web.Response(status=404, text="there is no such page\n")
+
+    async def _why_refused(self, _: web.BaseRequest) -> web.StreamResponse:
+        return web.Response(status=503 if self._is_full else 204)
+
+    @property
+    def _is_full(self) -> bool:
+        return len(self._clients) >= self._limits.clients
 
     async def _welcome_page(self, request: web.BaseRequest) -> web.StreamResponse:
         """Open a WebSocket for a page that knows the token; nothing of others is read."""
@@ -266,10 +298,10 @@ class WebServer:
         origin = urlsplit(request.headers.get("Origin", "")).netloc
         known = len(offered) == 2 and self._token.admits(offered[1])
         if not known or origin not in ("", request.host):
-            return web.Response(status=403, text="the token is missing or wrong\n")
+            return web.Response(status=403, text=REFUSED)
         if role not in get_args(Role) or not PAGE_NAME.fullmatch(name):
             return web.Response(status=400, text="this is no page of ours\n")
-        if name not in self._clients and len(self._clients) >= self._limits.clients:
+        if name not in self._clients and self._is_full:
             return web.Response(status=503, text="there are too many pages\n")
         opened = web.WebSocketResponse(
             protocols=(PROTOCOL,),
@@ -289,12 +321,11 @@ class WebServer:
         before = self._clients.pop(client.page, None)
         self._clients[client.page] = client
         if before is not None:  # the same page, whose connection was cut
-            if before is self._owner:
-                self._owner = client
             before.leave("this page is connected again")
         self._count()
         client.tell(do="welcome", **self._welcome)
         client.tell(do="status", **self._status)
+        self._place.join(client)
         if client.role in PLAYER_ROLES:
             for tile in self.tiles:
                 client.sound(tile)
@@ -304,6 +335,7 @@ class WebServer:
                 lambda number, taken, jpeg: self._see(client, number, taken, jpeg),
             )
         finally:
+            self._place.leave(client)
             if self._clients.get(client.page) is client:
                 del self._clients[client.page]
             self._count()
@@ -316,40 +348,24 @@ class WebServer:
 
     def _hear(self, client: PageClient, said: Said) -> None:
         if said.do == "tick":
-            client.tell(do="tick", camera=self._place_of(client))
+            client.tell(do="tick")
         elif said.do == "camera":
             if not CAMERA_NAME.fullmatch(said.name):
                 raise AppError("this is no name of a camera")
-            if client.role in CAMERA_ROLES and self._take_place(client):
+            if self._place.ask(client, take=said.take):
                 self.camera = said.name
                 self.feed.begin()
-        elif said.do == "stop":
-            self._owner = None if self._owner is client else self._owner
+                self._requests.append(said)
         elif client.role in PLAYER_ROLES:
             self._requests.append(said)
 
     def _see(self, client: PageClient, number: int, taken: float, jpeg: bytes) -> None:
         client.tell(do="got", id=number)
-        if client is self._owner:
+        if self._place.saw(client):
             # The source finds the picture's time by its very bytes.
             self._tags.append((jpeg, client.page, taken))
             if not self.feed.push(jpeg, taken):
                 raise AppError("this page sends pictures that are no JPEG of a camera's size")
-            self._seen = self._clock()
-
-    def _take_place(self, client: PageClient) -> bool:
-        """Return whether a page's camera is the camera now: only one is."""
-        if self._owner not in self._clients.values():
-            self._owner = None
-        quiet = self._clock() - self._seen > CAMERA_QUIET_S
-        if self._owner is None or quiet:
-            self._owner, self._seen = client, self._clock()
-        return self._owner is client
-
-    def _place_of(self, client: PageClient) -> str:
-        if client.role not in CAMERA_ROLES or self._owner is None:
-            return "free"
-        return "yours" if self._owner is client else "other"
 
 
 def _listen(listener: Listener) -> socket.socket:

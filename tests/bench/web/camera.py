@@ -59,3 +59,37 @@ READ_CLOCK = (
     f"{CELL // 2})] > 127) n |= 1 << b; return n; }}; return true; }})()"
 )
 """Defines `clockOf(video or canvas)` in a page."""
+
+PHONE_CAMERA = """(() => {
+  const of = navigator.mediaDevices, get = of.getUserMedia.bind(of);
+  let raw;
+  window.isTaken = window.isTurning = window.upright = false;
+  window.takeCamera = () => {
+    isTaken = true;
+    for (const track of [...stream.getTracks(), ...raw.getTracks()]) {
+      track.stop();
+      track.dispatchEvent(new Event("ended"));
+    }
+  };
+  of.getUserMedia = async asked => {
+    if (isTaken) throw new DOMException("in use", "NotReadableError");
+    raw = await get(asked);
+    if (!isTurning) return raw;
+    const video = document.createElement("video"), canvas = document.createElement("canvas");
+    video.muted = true;
+    video.srcObject = raw;
+    await video.play();
+    const context = canvas.getContext("2d", {alpha: false});
+    const draw = () => {
+      const [width, height] = upright ? [720, 1280] : [1280, 720];
+      if (canvas.width !== width) [canvas.width, canvas.height] = [width, height];
+      if (upright) context.drawImage(video, 438, 0, 405, 720, 0, 0, width, height);
+      else context.drawImage(video, 0, 0, width, height);
+      video.requestVideoFrameCallback(draw);
+    };
+    draw();
+    return canvas.captureStream();
+  };
+})()"""
+"""Lets what happens to a phone's camera happen to the fake one, which shows what it shows: with
+`isTurning`, its pictures are upright if `upright`; `takeCamera()` ends it while `isTaken`."""

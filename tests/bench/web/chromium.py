@@ -72,6 +72,11 @@ class Tab:
         await self.call("Page.navigate", url=address)
         await self.until("document.readyState === 'complete'")
 
+    async def before_each_page(self, script: str) -> None:
+        """Run a script before those of each page that is opened here."""
+        await self.call("Page.enable")
+        await self.call("Page.addScriptToEvaluateOnNewDocument", source=script)
+
     async def resize(self, width: int, height: int, *, phone: bool = False) -> None:
         """Look at the page on a screen of a size [CSS px]."""
         await self.call(
@@ -106,17 +111,21 @@ class Tab:
 class Chromium:
     """A running browser."""
 
-    def __init__(self, session: aiohttp.ClientSession, address: str) -> None:
-        self._session, self._address = session, address
+    def __init__(self, session: aiohttp.ClientSession, port: str, browser: str) -> None:
+        self._session, self._root = session, f"ws://127.0.0.1:{port}"
+        self._browser = browser
 
-    async def tab(self) -> Tab:
-        """Open a tab."""
-        async with self._session.put(f"{self._address}/json/new?about:blank") as answer:
-            target = await answer.json()
+    async def tab(self, *, hides: bool = False) -> Tab:
+        """Open a tab, in a window of its own unless it `hides` the one before it."""
+        found = await self._call("Target.createTarget", url="about:blank", newWindow=not hides)
         socket = await self._session.ws_connect(
-            target["webSocketDebuggerUrl"], max_msg_size=0, heartbeat=None
+            f"{self._root}/devtools/page/{found['targetId']}", max_msg_size=0, heartbeat=None
         )
         return Tab(socket)
+
+    async def _call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        async with self._session.ws_connect(f"{self._root}{self._browser}") as socket:
+            return await Tab(socket).call(method, **parameters)
 
 
 @asynccontextmanager
@@ -154,9 +163,9 @@ async def chromium(camera: Path | None = None, language: str = "en"):
                 if port_file.exists() and port_file.read_text().strip():
                     break
                 await asyncio.sleep(0.05)
-            port = port_file.read_text().split()[0]
+            port, browser = port_file.read_text().split()
             async with aiohttp.ClientSession() as session:
-                yield Chromium(session, f"http://127.0.0.1:{port}")
+                yield Chromium(session, port, browser)
         finally:
             process.terminate()
             try:

@@ -1,17 +1,18 @@
-"""A proxy on loopback that stalls, drops connections, and is cut off."""
+"""A proxy on loopback that stalls, slows down, drops connections, and is cut off."""
 
 import asyncio
 import contextlib
 
 
 class FaultyProxy:
-    """Forwards connections to a port. `stalled` holds all bytes back, `cut` refuses everybody."""
+    """Forwards connections to a port, with faults for as long as their coroutines take."""
 
     def __init__(self, target: int) -> None:
         self._target = target
         self._flowing = asyncio.Event()
         self._flowing.set()
         self._cut = False
+        self._bytes_per_s = 0.0
         self._writers: set[asyncio.StreamWriter] = set()
         self.port = 0
 
@@ -34,6 +35,12 @@ class FaultyProxy:
         self._flowing.clear()
         await asyncio.sleep(seconds)
         self._flowing.set()
+
+    async def slow_down(self, seconds: float, bytes_per_s: float) -> None:
+        """Let only so much through each way of a connection, for some seconds."""
+        self._bytes_per_s = bytes_per_s
+        await asyncio.sleep(seconds)
+        self._bytes_per_s = 0.0
 
     async def cut(self, seconds: float) -> None:
         """End all connections, and refuse new ones for some seconds."""
@@ -60,6 +67,8 @@ class FaultyProxy:
         with contextlib.suppress(OSError):
             while data := await reader.read(65536):
                 await self._flowing.wait()
+                if self._bytes_per_s:
+                    await asyncio.sleep(len(data) / self._bytes_per_s)
                 writer.write(data)
                 await writer.drain()
         writer.close()

@@ -92,7 +92,7 @@ def test_pages_that_view_get_the_picture_alone_mirrored_as_asked(desk):
     picture = rng.integers(0, 255, (36, 64, 3), np.uint8)
     step = step_of(picture)
     desk.pages.wanted = frozenset({"plain"})
-    desk.pages.asked = ['{"do":"mirror","on":true}']
+    desk.pages.asked = ['{"do":"camera","name":"ab-front","mirror":true}']
     desk.screen.take_requests()
     desk.screen.show(step, ROBOT)
     (plain,) = desk.screen._pictures(frozenset({"plain"})).values()
@@ -110,4 +110,6 @@ def test_pages_are_told_that_nothing_has_changed_twice_a_second_only(desk):
     assert len(desk.pages.statuses) == 2
     desk.now[0] += 0.6
     desk.screen.report(SessionStatus(scenario="follow", recording=1.5))
-    assert desk.pages.statuses[-1] == {"scenario": "follow", "recording": 1.5, "notice": None}
+    assert desk.pages.statuses[-1] == {
+        "scenario": "follow", "recording": 1.5, "notice": None, "hint": "",
+    }  # fmt: skip

@@ -5,16 +5,19 @@ import re
 import time
 from contextlib import asynccontextmanager, closing
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import aiohttp
 import cv2
 import numpy as np
 import pytest
+from aiohttp import web
 
 from cubeling.app.admission import Token
 from cubeling.app.ui.web.limits import WebLimits
 from cubeling.app.ui.web.messages import PICTURE, pack, read_said, unpack
-from cubeling.app.ui.web.page import MAX_PAGE_BYTES, page, page_headers
+from cubeling.app.ui.web.page import MAX_PAGE_BYTES, document, page
+from cubeling.app.ui.web.place import CAMERA_QUIET_S, CameraPlace
 from cubeling.app.ui.web.server import LOOPBACK, Listener, WebServer
 
 WAIT_S = 20.0
@@ -96,22 +99,22 @@ async def until(condition):
 
 
 def test_the_page_is_small_and_loads_nothing_from_elsewhere():
-    text = page().decode()
-    assert len(page()) <= MAX_PAGE_BYTES
+    text = page().body.decode()
+    assert len(page().body) <= MAX_PAGE_BYTES
     assert not re.search(r"(https?:)?//[a-z0-9]", text.replace("https:// or http://localhost", "")
                          .replace("https:// o http://localhost", ""))  # fmt: skip
-    assert "default-src 'none'" in page_headers()["Content-Security-Policy"]
+    assert "default-src 'none'" in page().headers["Content-Security-Policy"]
 
 
 def test_every_word_of_the_page_is_there_in_both_languages():
-    text = page().decode()
-    spanish, english = text[text.index("const T = es ?") :].split("} : {")[:2]
-    keys = [
-        set(re.findall(r"^\s*(\w+):|, (\w+): [\[\"]", part.partition("};")[0], re.M))
-        for part in (spanish, english)
+    text = page().body.decode()
+    english, spanish = text[text.index("en: {") :].split("es: {")[:2]
+    names = [
+        set(re.findall(r"(?:^|, )(\w+): [\[\"]", part.partition("about: {")[0], re.M))
+        for part in (english, spanish)
     ]
-    names = [{name for pair in each for name in pair if name} for each in keys]
-    assert names[0] - {"about", "follow", "sketch", "companion", "reach"} == names[1] - {"about"}
+    assert names[0] == names[1]
+    assert len(names[0]) > 20
 
 
 def test_only_who_knows_the_token_is_let_in():
@@ -157,41 +160,119 @@ def test_a_picture_arrives_with_its_very_bytes_and_is_acknowledged():
 def test_one_phone_is_the_camera_and_its_place_is_free_when_it_leaves():
     async def use(server):
         async with page_of(server, "second") as second:
+            assert (await second.told("place"))["camera"] == "free"
             async with page_of(server, "first") as first:
                 await first.say(do="camera", name="first")
+                assert (await second.told("place"))["camera"] == "other"
                 await first.see(1, JPEG)
                 await first.told("got")
                 await second.say(do="camera", name="second")
-                await second.say(do="tick")
-                assert (await second.told("tick"))["camera"] == "other"
                 await second.see(1, JPEG)
                 await second.told("got")
                 assert server.camera == "first"
                 assert server.feed.number == 1
-            await until(lambda: len(server.clients) == 1)
+            assert (await second.told("place"))["camera"] == "free"
             await second.say(do="camera", name="second")
-            await second.say(do="tick")
-            assert (await second.told("tick"))["camera"] == "yours"
+            assert (await second.told("place"))["camera"] == "yours"
             assert server.camera == "second"
 
     serve(use)
 
 
-def test_a_page_that_is_connected_anew_keeps_its_place():
+def test_a_phone_may_take_the_place_of_another_and_a_window_cannot():
+    async def use(server):
+        async with (
+            page_of(server, "first", "camera") as first,
+            page_of(server, "second") as second,
+            page_of(server, "third", "window") as third,
+        ):
+            await first.say(do="camera", name="first")
+            await second.told("place")
+            assert (await second.told("place"))["camera"] == "other"
+            await second.say(do="camera", name="second", take=True, mirror=True)
+            assert (await second.told("place"))["camera"] == "yours"
+            await third.say(do="camera", name="third", take=True)
+            await third.say(do="tick")
+            await third.told("tick")
+            await first.told("place")
+            assert (await first.told("place"))["camera"] == "yours"
+            assert (await first.told("place"))["camera"] == "other"
+            assert server.camera == "second"
+            assert [each.mirror for each in server.take_requests()] == [False, True]
+
+    serve(use)
+
+
+def test_a_page_that_is_connected_anew_keeps_its_place_unless_it_is_another_thing_now():
     async def use(server):
         async with page_of(server) as before:
             await before.say(do="camera", name="ab12")
             await before.see(1, JPEG)
             await before.told("got")
             async with page_of(server) as again:
+                assert (await again.told("place"))["camera"] == "yours"
                 assert await before.why_closed() == 4000
-                await again.say(do="tick")
-                assert (await again.told("tick"))["camera"] == "yours"
                 await again.see(2, JPEG)
                 await again.told("got")
                 assert server.feed.number == 2
+                async with page_of(server, role="window") as window:
+                    assert (await window.told("place"))["camera"] == "free"
 
     serve(use)
+
+
+def test_a_camera_that_sends_nothing_gives_its_place_up():
+    now = [100.0]
+    places: dict[str, list[str]] = {"first": [], "second": []}
+    first, second = (
+        SimpleNamespace(
+            page=name, role="play", tell=lambda do, camera, name=name: places[name].append(camera)
+        )
+        for name in places
+    )
+    place = CameraPlace(lambda: now[0])
+    place.join(first)
+    place.join(second)
+    assert place.ask(first, take=False)
+    for _ in range(3):
+        now[0] += 0.9 * CAMERA_QUIET_S
+        assert place.saw(first)
+        place.check()
+    assert not place.saw(second)
+    now[0] += 1.1 * CAMERA_QUIET_S
+    place.check()
+    assert place.ask(second, take=False)
+    assert places == {"first": ["free", "yours", "free", "other"],
+                      "second": ["free", "other", "free", "yours"]}  # fmt: skip
+
+
+def test_further_pages_are_open_and_further_paths_ask_for_the_token(tmp_path):
+    (tmp_path / "desk.html").write_text("<style>/*STYLE*/</style><script>/*SCRIPT*/</script>")
+    (tmp_path / "desk.css").write_text("p{margin:0}\n")
+    (tmp_path / "desk.js").write_text("let desk;\n")
+
+    async def answer(request):
+        return web.json_response({"asked": request.query["name"]})
+
+    desk = document("desk.html", ["desk.css"], ["desk.js"], tmp_path)
+    asked = "/answers?name=ada"
+    listener = [Listener(LOOPBACK, 0)]
+
+    async def use(server):
+        async with aiohttp.ClientSession(f"http://{LOOPBACK}:{server.ports[0]}") as session:
+            async with session.get("/desk") as found:
+                assert await found.text() == "<style>p{margin:0}</style><script>let desk;</script>"
+                assert "sha256-" in found.headers["Content-Security-Policy"]
+            async with session.get(asked) as found:
+                assert found.status == 403
+            bearer = {"Authorization": f"Bearer {TOKEN.text}"}
+            async with session.get(asked, headers=bearer) as found:
+                assert await found.json() == {"asked": "ada"}
+
+    with closing(
+        WebServer(listener, TOKEN, documents={"/desk": desk}, routes={"/answers": answer})
+    ) as server:
+        asyncio.run(use(server))
 
 
 def test_players_ask_and_viewers_cannot():
@@ -311,6 +392,12 @@ def test_there_is_room_for_so_many_pages():
                 async with page_of(server, "third"):
                     pass
             assert refused.value.status == 503
+            for token, why in ((TOKEN.text, 503), ("wrong-token", 403)):
+                async with (
+                    aiohttp.ClientSession(headers={"Authorization": f"Bearer {token}"}) as session,
+                    session.get(f"http://{LOOPBACK}:{server.ports[0]}/token") as answer,
+                ):
+                    assert answer.status == why
             async with page_of(server, "second"):
                 pass  # again
 
