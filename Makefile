@@ -48,6 +48,7 @@ campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faul
 	$(BIN)/python -m tests.campaigns.long_play --minutes 30
 	$(BIN)/python -m tests.campaigns.tracker
 	$(BIN)/python -m tests.campaigns.two_cubes
+	$(BIN)/python -m tests.campaigns.browser
 
 campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5

@@ -121,8 +121,11 @@ def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> SyntheticS
 
 
 def webcam(options: SyntheticOptions) -> Intrinsics:
-    """Return the camera: focal length 900 px at 1280 × 720, a little off centre, mild barrel."""
-    scale = options.width / 1280
+    """Return the camera: focal length 900 px at 1280 × 720, a little off centre, mild barrel.
+
+    One that is higher than it is wide is the same camera, held upright as a phone.
+    """
+    scale = max(options.width, options.height) / 1280
     matrix = np.array(
         [
             [900.0 * scale, 0.0, options.width / 2 + 6.3 * scale],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+import importlib.util
 import platform
 import shutil
 from dataclasses import dataclass
@@ -82,6 +83,7 @@ def examine(*, cameras: bool = True) -> list[Finding]:
         _broker(),
         _osc(),
         _lsl(),
+        _phone(),
     ]
     return [*findings, _camera()] if cameras else findings
 
@@ -248,6 +250,23 @@ def _lsl() -> Finding:
 
     version = pylsl.library_version()
     return Finding("LSL", "good", f"liblsl {version // 100}.{version % 100}")
+
+
+PHONE_LIBRARIES = ("aiohttp", "cryptography", "segno")
+"""What `cubeling serve` needs: the extra [web]."""
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "firefox-esr", "firefox")
+
+
+def _phone() -> Finding:
+    """Look for what `cubeling serve` needs, and for a browser for its tests."""
+    absent = [each for each in PHONE_LIBRARIES if importlib.util.find_spec(each) is None]
+    if absent:
+        found = f"no {', '.join(absent)}: cubeling serve does not run"
+        return Finding("phone", "missing", found, f"pip install {' '.join(absent)}")
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    tests = "no browser here: tests of the page are left out" if browser is None else browser
+    return Finding("phone", "good", f"cubeling serve runs; {tests}")
 
 
 def _camera() -> Finding:

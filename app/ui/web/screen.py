@@ -114,7 +114,9 @@ class WebScreen:
 
     def notify(self, words: str) -> None:
         """Show a notice on the pages for some seconds."""
-        self._server.say(words)
+        camera = self._camera_uri()
+        if not camera or camera not in words:  # who plays knows which phone it is
+            self._server.say(words)
 
     def close(self) -> None:
         """Show nothing any more; a second call does nothing."""

@@ -49,3 +49,11 @@ def test_a_port_on_usb_may_be_a_robot(monkeypatch):
     monkeypatch.setattr("cubeling.robot.serial_ports", lambda: [ON_USB, BUILT_IN])
     robot = finding("robot")
     assert (robot.verdict, robot.found) == ("good", "/dev/ttyACM0")
+
+
+def test_what_a_phone_needs_is_named_with_the_browser_for_its_tests(monkeypatch):
+    monkeypatch.setattr(doctor.shutil, "which", lambda name, path=None: None)
+    assert finding("phone").verdict == "good"
+    assert "tests of the page are left out" in finding("phone").found
+    monkeypatch.setattr(doctor, "PHONE_LIBRARIES", ("aiohttp", "no_such_library"))
+    assert finding("phone").remedy == "pip install no_such_library"

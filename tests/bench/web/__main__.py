@@ -15,6 +15,7 @@ from typing import Any
 
 from tests.bench.web.camera import write_camera
 from tests.bench.web.chromium import chromium
+from tests.bench.web.firefox import firefox as open_firefox, program as firefox_program
 from tests.bench.web.guide_picture import picture
 from tests.bench.web.hostile import hostile
 from tests.bench.web.playing import LOOP_S, RATE, median_95, play, sampled
@@ -43,9 +44,24 @@ async def start(folder: Path) -> None:
     )
 
 
+async def firefox(folder: Path) -> None:
+    """Play in Firefox, whose camera shows moving colours; measure how late the picture is."""
+    if firefox_program() is None:
+        return say("there is no Firefox: apt install firefox-esr")
+    async with open_firefox() as (tab, name), serving(folder) as served:
+        await tab.open(served.address)
+        await tab.until("!$('start').hidden && Object.keys(tiles).length > 3")
+        await tab.run("$('go').click()")
+        await tab.until("delays.length > 30", 120.0)
+        shown = await tab.run("`${$('picture').width} x ${$('picture').height}`")
+        late = await tab.run("$('delay').textContent")
+    say(f"{name} connects, and shows pictures of {shown}, late by {late} in the median")
+
+
 SCENES: dict[str, Callable[[Path], Coroutine[Any, Any, None]]] = {
     "start": start,
     "hostile": hostile,
+    "firefox": firefox,
     "picture": picture,
 }
 """The scenes by name; the picture is drawn only when it is named."""

@@ -6,7 +6,7 @@ const video = $("camera");
 const grab = window.OffscreenCanvas ? new OffscreenCanvas(2, 2) : document.createElement("canvas");
 let facing = stored("localStorage", "facing", () => "environment");
 let stream, opening = false, encoding = false, number = 0, quality = .85;
-let place = "free", taking = false;
+let place = "", taking = false; // "yours", "other", "free"; "" until the server has said it
 
 const hasCamera = () => welcome?.camera && (role === "play" || role === "camera");
 const live = () => stream?.getVideoTracks()[0]?.readyState === "live";
@@ -21,6 +21,7 @@ function placed(whose) {
 
 /* Open the camera if this page's is wanted, and close it if another one's is. */
 function followPlace() {
+  if (!place) return;
   if (playing && hasCamera() && (taking || place !== "other")) {
     if (!live()) openCamera();
     else if (place !== "yours" && !document.hidden) offer();

@@ -12,6 +12,7 @@ function connect() {
     socket.close();
   }
   inFlight.clear();
+  place = "";
   opened = heard = now();
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   const asked = `role=${role}&page=${page}${clear ? "&background=none" : ""}`;

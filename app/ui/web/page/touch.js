@@ -84,6 +84,7 @@ function becomes(chosen) {
   history.replaceState(null, "", PATHS[role] + location.search + location.hash); // kept if reloaded
   taking = hasCamera();
   connect();
+  showRole();
 }
 
 function showRole() {

@@ -1,33 +1,135 @@
 """The page in a real browser, where there is one."""
 
 import asyncio
+import json
+from contextlib import AsyncExitStack
+from types import SimpleNamespace
 
 import pytest
 
 from tests.bench.web.camera import write_camera
 from tests.bench.web.chromium import chromium, program
+from tests.bench.web.faulty_proxy import FaultyProxy
+from tests.bench.web.playing import open_phone, play, time_to_picture
 from tests.bench.web.serving import serving
 
-pytestmark = pytest.mark.skipif(program() is None, reason="there is no Chromium")
+pytestmark = [
+    pytest.mark.skipif(program() is None, reason="there is no Chromium: apt install chromium"),
+    pytest.mark.slow("starts a browser and a session"),
+    pytest.mark.full,
+]
+
+ROLE = "$('role').textContent"
+
+COUNT_SAMPLES = """(async () => {
+  const counter = `registerProcessor("counter", class extends AudioWorkletProcessor {
+    process([[left]]) {
+      this.heard = (this.heard || 0) + (left || []).filter(each => each !== 0).length;
+      this.port.postMessage(this.heard);
+      return true;
+    }
+  })`;
+  const script = new Blob([counter], {type: "text/javascript"});
+  await audio.audioWorklet.addModule(URL.createObjectURL(script));
+  const node = new AudioWorkletNode(audio, "counter");
+  node.port.onmessage = message => { window.heardSamples = message.data; };
+  loudness.connect(node);
+  return audio.state;
+})()"""
 
 
-@pytest.mark.slow("starts a browser and a session")
-@pytest.mark.full
-def test_a_browser_plays_with_its_camera_and_goes_on_after_a_reload(tmp_path):
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory):
+    """Yield a browser, a server and a faulty line to it, with the loop that they live in."""
+    loop, folder, closing = (
+        asyncio.new_event_loop(),
+        tmp_path_factory.mktemp("web"),
+        AsyncExitStack(),
+    )
+    write_camera(folder / "camera.mjpeg", "companion", 2.0)
+
+    async def start():
+        browser = await closing.enter_async_context(chromium(folder / "camera.mjpeg", "es"))
+        served = await closing.enter_async_context(serving(folder, "--quality", "reduced"))
+        proxy = await closing.enter_async_context(FaultyProxy(served.port))
+        return SimpleNamespace(
+            browser=browser, served=served, proxy=proxy, use=loop.run_until_complete
+        )
+
+    try:
+        yield loop.run_until_complete(start())
+    finally:
+        loop.run_until_complete(closing.aclose())
+        loop.close()
+
+
+def errors(*tabs):
+    return [each for tab in tabs for each in tab.log if "exception" in each]
+
+
+def test_a_browser_plays_and_goes_on_after_a_reload_and_faults_of_its_line(desk):
     async def use():
-        camera = tmp_path / "camera.mjpeg"
-        write_camera(camera, "companion", 1.0)
-        async with chromium(camera, language="es") as browser, serving(tmp_path) as served:
-            tab = await browser.tab()
-            await tab.open(served.address)
-            await tab.until("!$('start').hidden && Object.keys(tiles).length > 3")
-            assert await tab.run("$('go').getAttribute('aria-label')") == "Jugar"
-            for _ in range(2):
-                await tab.run("$('go').click()")
-                await tab.until("delays.length > 2", 60.0)
-                assert await tab.run("$('picture').width") == 1280
-                await tab.call("Page.reload")
-                await tab.until("document.readyState === 'complete' && !$('start').hidden")
-            assert not [each for each in tab.log if "exception" in each]
+        tab = await desk.browser.tab()
+        await open_phone(tab, desk.served.at(desk.proxy.port))
+        assert await tab.run("$('go').getAttribute('aria-label')") == "Jugar"
+        await tab.run("$('go').click()")
+        await tab.until("delays.length > 2", 60.0)
+        assert await tab.run("$('picture').width") == 1280
+        await tab.run("window.isOld = true")
+        await tab.call("Page.reload")
+        await tab.until("!window.isOld && typeof delays !== 'undefined' && delays.length > 2")
+        assert await tab.run("$('start').hidden"), "nobody has touched it"
+        await tab.run("window.onpicture = (id, taken) => { window.lastTaken = taken; }; true")
+        for fault in (desk.proxy.stall(0.5), desk.proxy.cut(0.0), desk.proxy.cut(2.0)):
+            await fault
+            await time_to_picture(tab, 20.0)
+        assert not errors(tab)
+        await tab.call("Page.close")
 
-    asyncio.run(use())
+    desk.use(use())
+
+
+def test_a_second_phone_is_a_screen_and_each_may_become_the_camera(desk):
+    async def use():
+        first, second = await desk.browser.tab(), await desk.browser.tab()
+        await play(first, desk.served.address)
+        await open_phone(second, desk.served.address)
+        assert await second.run(ROLE) == "Pantalla: otro es la cámara"
+        await second.run("$('go').click()")
+        await second.until("shown > 2")
+        assert await second.run("stream") is None, "its camera is not opened"
+        await second.run("roles.play.click()")
+        await second.until("place === 'yours' && live()")
+        await first.until("place === 'other' && !stream")
+        assert await second.run(ROLE) == "Cámara y pantalla"
+        await second.run("roles.camera.click()")
+        await second.until("role === 'camera' && place === 'yours'")
+        assert await second.run("location.pathname") == "/camera"
+        assert await second.run("getComputedStyle($('picture')).display") == "none"
+        before = await first.run("shown")
+        await first.until(f"shown > {before + 3}")
+        await second.run("roles.window.click()")
+        await first.until("place === 'yours' && live()")
+        assert not errors(first, second)
+        for tab in (first, second):
+            await tab.call("Page.close")
+
+    desk.use(use())
+
+
+def test_the_sound_of_the_session_is_heard_in_the_browser(desk):
+    async def use():
+        tab = await desk.browser.tab()
+        await tab.call("Page.setBypassCSP", enabled=True)
+        await play(tab, desk.served.address)
+        assert await tab.run(COUNT_SAMPLES) == "running"
+        await tab.until("window.heardSamples > 4800", 60.0)
+        await tab.run("bar.sound.click()")
+        assert json.loads(await tab.run("JSON.stringify([loudness.gain.value, muted])")) == [
+            0,
+            True,
+        ]
+        assert not errors(tab)
+        await tab.call("Page.close")
+
+    desk.use(use())

@@ -87,6 +87,13 @@ def test_another_camera_is_asked_for_until_the_session_has_it(desk):
     assert desk.screen.take_requests() == ()
 
 
+def test_players_are_told_of_all_but_of_the_phone_in_their_hand(desk):
+    desk.camera[0] = "phone:ab?size=1280x720"
+    desk.screen.notify("The camera is now phone:ab?size=1280x720")
+    desk.screen.notify("Playing follow")
+    assert desk.pages.words == ["Playing follow"]
+
+
 def test_pages_that_view_get_the_picture_alone_mirrored_as_asked(desk):
     rng = np.random.default_rng(3)
     picture = rng.integers(0, 255, (36, 64, 3), np.uint8)
