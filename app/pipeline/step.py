@@ -162,7 +162,8 @@ class Step:
 
     def messages(self) -> dict[str, object]:
         """Return the messages between camera and picture, by their topic in a recording."""
-        measured = {} if self.appearance is None else {"/picture/appearance": self.appearance}
+        seen = self.appearance
+        measured = {} if seen is None else {"/picture/appearance": seen.news()}
         return {
             "/cube/state": self.state,
             "/cube/controls": self.controls,

@@ -186,8 +186,10 @@ def _upgrade_content(kind: type[Any], content: Any) -> Any:
     own among the controls. All that was before sessions held the version of their format: these
     fields tell the versions apart. Before a profile had `liveliness`, a speech moved only arms and
     head; so it does in a replay. Before there was a cast, no obstacle was alive. Before there were
-    24 emotions, none had an intensity.
+    24 emotions, none had an intensity. Before there was a map of the room, no appearance had one.
     """
+    if kind is Appearance and "room" not in content:
+        content = {**content, "room": None}
     boxes = content.get("obstacles")
     if boxes and "alive" not in boxes[0]:  # before there was a cast
         content = {**content, "obstacles": [{**each, "alive": False} for each in boxes]}

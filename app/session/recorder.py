@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from datetime import datetime
 from functools import cache, partial
 from pathlib import Path
@@ -44,6 +45,7 @@ from cubeling.app.session.encoding import (
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.robot import Closeable
 from cubeling.tracking import FOCAL_DEVIATION, LENS_RECORD, Frame, Intrinsics, nanoseconds_of
+from cubeling.tracking.appearance import Appearance
 
 CHUNK_BYTES = 128 * 1024
 """Size at which a chunk is written at the latest [B]: about that of one JPEG picture."""
@@ -111,6 +113,7 @@ class Recorder(Closeable):
         self._metadata = {SESSION_RECORD: {FORMAT_KEY: f"{SESSION_FORMAT}", **metadata}}
         if played:
             self._metadata[PLAYED_RECORD] = dict(played)
+        self._blind = metadata.get("video") == "no"
         self._steps = 0
         self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(MAX_QUEUED_WRITES)
         self._channels: dict[str, int] = {}
@@ -164,6 +167,8 @@ class Recorder(Closeable):
         if came_in is not None:
             self._json(INPUTS_TOPIC, partial(encode, came_in), now)
         for topic, message in step.messages().items():
+            if self._blind and isinstance(message, Appearance):
+                message = replace(message, room=None)  # it is a picture
             self._json(topic, partial(encode, message), now)
         if self._steps == 1:  # so that a session that is killed at once has a picture
             self._submit(self._end_chunk)

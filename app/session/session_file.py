@@ -52,6 +52,7 @@ from cubeling.app.session.labels import (
 from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
 from cubeling.characters import CharacterCommand, SpeechIntent
 from cubeling.characters.speech import Samples
+from cubeling.tracking.appearance import Appearance
 
 START_OVER_EVENT = "start over"
 """Event of a player who starts over."""
@@ -359,8 +360,11 @@ class SessionFile:
             if topic.startswith(("/cast/", "/cubes/")) and topic.rpartition("/")[2] in parts
         ]
         kinds = {topic: message_type(topic) or object for topic in (*topics, *further)}
+        seen: Appearance | None = None
         for _, found in groupby(self.decode_messages(kinds), key=itemgetter(1)):
             of_frame = {topic: message for topic, _, message in found}
+            if APPEARANCE_TOPIC in of_frame:
+                seen = of_frame[APPEARANCE_TOPIC] = of_frame[APPEARANCE_TOPIC].after(seen)
             first = {
                 FIELD_OF_TOPIC[topic]: of_frame.pop(topic) for topic in topics if topic in of_frame
             }

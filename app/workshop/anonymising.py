@@ -14,7 +14,13 @@ from cubeling.app.errors import AppError
 from cubeling.app.scenarios import scenario_cube
 from cubeling.app.session import SessionFile, frame_encoder
 from cubeling.app.session.copying import copy_session
-from cubeling.app.session.encoding import IMAGE_TOPIC, message_type
+from cubeling.app.session.encoding import (
+    APPEARANCE_TOPIC,
+    IMAGE_TOPIC,
+    decode,
+    encode as encode_message,
+    message_type,
+)
 from cubeling.tracking import (
     CubeControls,
     CubeModel,
@@ -23,6 +29,7 @@ from cubeling.tracking import (
     nanoseconds_of,
     open_source,
 )
+from cubeling.tracking.appearance import Appearance
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -44,7 +51,8 @@ RIM_POINTS = 48
 def anonymise(session: Path, path: Path, edge: float) -> int:
     """Write a session whose pictures are blurred outside cubes and table, and return their number.
 
-    All other channels stay as they are. A picture in which no cube was found is blurred as a whole.
+    All other channels stay as they are, but for the map of the room. A picture in which no cube was
+    found is blurred as a whole.
 
     Parameters
     ----------
@@ -73,6 +81,8 @@ def anonymise(session: Path, path: Path, edge: float) -> int:
 
         def change(topic: str, time: float, data: bytes) -> bytes:
             nonlocal count
+            if topic == APPEARANCE_TOPIC:
+                return without_room(data)
             if topic != IMAGE_TOPIC:
                 return data
             frame = next(frames, None)
@@ -88,6 +98,11 @@ def anonymise(session: Path, path: Path, edge: float) -> int:
 
         copy_session(session, path, change, pictures=kind)
     return count
+
+
+def without_room(data: bytes) -> bytes:
+    """Return an appearance without the map of the room, which shows who is in it."""
+    return encode_message(replace(decode(Appearance, data), room=None))
 
 
 def edge_of(session: SessionFile) -> float:

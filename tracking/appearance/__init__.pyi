@@ -1,5 +1,7 @@
 from cubeling.tracking.appearance.appearance import (
+    ENVIRONMENT_PX as ENVIRONMENT_PX,
     Appearance as Appearance,
+    EnvironmentMap as EnvironmentMap,
     MeasuredLight as MeasuredLight,
     PictureQuality as PictureQuality,
 )
@@ -11,3 +13,4 @@ from cubeling.tracking.appearance.meter import (
     AppearanceMeter as AppearanceMeter,
 )
 from cubeling.tracking.appearance.picture_quality import QualityMeter as QualityMeter
+from cubeling.tracking.appearance.room.room_meter import RoomMeter as RoomMeter

@@ -1,9 +1,14 @@
 """What the picture of a frame tells beside the cube's pose, as values."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from cubeling.tracking.appearance.hand.mask import HandMask
-from cubeling.tracking.geometry.arrays import Array
+from cubeling.tracking.geometry.arrays import Array, Image
+
+ENVIRONMENT_PX = 64
+"""Side of a face of an environment map [texels]."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +51,38 @@ class PictureQuality:
 
 
 @dataclass(frozen=True)
+class EnvironmentMap:
+    """The light from all directions, as it comes to one point over the table.
+
+    Raises
+    ------
+    ValueError
+        The planes are not of six faces of `ENVIRONMENT_PX`, or the point is none.
+    """
+
+    planes: Image
+    """Red, then green, then blue of the faces +x, −x, +y, −y, +z, −z of a cube map in the table
+    frame, turned as OpenGL has them, (3 · 6 · 64, 64), sRGB: 255 is the brightest white of the
+    picture."""
+
+    centre: Array
+    """The point, in the table frame, (3,) [m]."""
+
+    reach: float
+    """How far the table reaches from there, and how far all else is [m]."""
+
+    timestamp: float
+    """Time of the picture that it was made of [s]: earlier than that of the frame where nothing
+    has changed since."""
+
+    def __post_init__(self) -> None:
+        if self.planes.shape != (18 * ENVIRONMENT_PX, ENVIRONMENT_PX):
+            raise ValueError(f"an environment map has no {self.planes.shape} texels")
+        if np.shape(self.centre) != (3,) or not np.isfinite([*self.centre, self.reach]).all():
+            raise ValueError("an environment map has no place")
+
+
+@dataclass(frozen=True)
 class Appearance:
     """What the picture of a frame tells beside the cube's pose."""
 
@@ -60,3 +97,19 @@ class Appearance:
 
     timestamp: float
     """Time of the frame [s]."""
+
+    room: EnvironmentMap | None = None
+    """The light from all directions; None until a table was seen."""
+
+    def news(self) -> "Appearance":
+        """Return what a recording holds: a map of the room only in the frame that it was made of.
+
+        It is larger than all else, and mostly that of the frame before.
+        """
+        known = self.room is not None and self.room.timestamp != self.timestamp
+        return replace(self, room=None) if known else self
+
+    def after(self, before: "Appearance | None") -> "Appearance":
+        """Return what a recording meant by this, after the message before."""
+        kept = None if before is None else before.room
+        return replace(self, room=kept) if self.room is None and kept is not None else self

@@ -1,4 +1,4 @@
-"""What the picture of a frame tells beside the cube's pose: the hand, the light, the softness."""
+"""What a picture tells beside the cube's pose: the hand, the light, the softness, the room."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from cubeling.tracking.appearance.hand.finder import HandFinder
     from cubeling.tracking.appearance.light import LightMeter
     from cubeling.tracking.appearance.picture_quality import QualityMeter
+    from cubeling.tracking.appearance.room.room_meter import RoomMeter
 
-APPEARANCE_PARTS = ("hand", "light", "softness")
+APPEARANCE_PARTS = ("hand", "light", "softness", "room")
 """What can be measured."""
 
 
@@ -33,6 +34,7 @@ class AppearanceMeter:
     _hand: "HandFinder | None" = None
     _light: "LightMeter | None" = None
     _softness: "QualityMeter | None" = None
+    _room: "RoomMeter | None" = None
 
     def __init__(
         self,
@@ -53,6 +55,10 @@ class AppearanceMeter:
             from cubeling.tracking.appearance.picture_quality import QualityMeter
 
             self._softness = QualityMeter(cube, intrinsics)
+        if "room" in parts:
+            from cubeling.tracking.appearance.room.room_meter import RoomMeter
+
+            self._room = RoomMeter(intrinsics)
 
     def update(
         self, frame: Frame, state: CubeState, camera_from_table: Array | None = None
@@ -62,10 +68,12 @@ class AppearanceMeter:
         The pose of the table, (4, 4), tells where up is: light comes from there more often.
         """
         up = None if camera_from_table is None else camera_from_table[:3, 1]
-        image = frame.image
+        image, now, room = frame.image, frame.timestamp, self._room
+        light = None if self._light is None else self._light.update(image, state, up)
         return Appearance(
             None if self._hand is None else self._hand.update(image, state),
-            None if self._light is None else self._light.update(image, state, up),
+            light,
             None if self._softness is None else self._softness.update(image, state),
-            frame.timestamp,
+            now,
+            None if room is None else room.update(image, camera_from_table, light, now),
         )

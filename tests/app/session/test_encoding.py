@@ -10,7 +10,14 @@ from hypothesis import given, strategies as st
 
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import EmotionTarget
-from cubeling.app.session.encoding import CHANNEL_TYPES, decode, encode, schema, upgrade
+from cubeling.app.session.encoding import (
+    APPEARANCE_TOPIC,
+    CHANNEL_TYPES,
+    decode,
+    encode,
+    schema,
+    upgrade,
+)
 from cubeling.characters import (
     ActionIntent,
     CharacterCommand,
@@ -19,9 +26,17 @@ from cubeling.characters import (
     PosedCharacter,
 )
 from cubeling.tracking import CubeControls, CubeState
-from cubeling.tracking.appearance import Appearance, HandMask, PictureQuality
+from cubeling.tracking.appearance import (
+    ENVIRONMENT_PX,
+    Appearance,
+    EnvironmentMap,
+    HandMask,
+    PictureQuality,
+)
 
 NUMBERS = st.floats(-1e3, 1e3)
+
+PLANES = np.full((18 * ENVIRONMENT_PX, ENVIRONMENT_PX), 90, np.uint8)
 
 
 def assert_equal(one, other):
@@ -88,6 +103,38 @@ def test_a_hand_is_the_same_after_decoding():
     assert seen.hand.share.dtype == np.uint8
     np.testing.assert_equal(dataclasses.astuple(seen.hand), dataclasses.astuple(hand))
     assert (seen.light, seen.softness, seen.timestamp) == (None, PictureQuality(0.7, 2.0), 1.5)
+
+
+def test_a_map_of_the_room_is_recorded_once_and_meant_until_the_next():
+    planes = np.arange(18 * 64 * 64, dtype=np.uint32).astype(np.uint8).reshape(-1, 64)
+    maps = [EnvironmentMap(planes + each, np.zeros(3), 1.0, 0.1 * each) for each in (0, 2)]
+    seen = [Appearance(None, None, None, 0.1 * time, maps[time // 2]) for time in range(4)]
+    written = [encode(each.news()) for each in seen]
+    assert [len(each) > 1000 for each in written] == [True, False, True, False]
+    before = None
+    for sent, document in zip(seen, written, strict=True):
+        before = decode(Appearance, document).after(before)
+        assert before.room is not None
+        assert sent.room is not None
+        np.testing.assert_array_equal(before.room.planes, sent.room.planes)
+        assert before.room.timestamp == sent.room.timestamp
+
+
+def test_a_damaged_map_of_the_room_is_refused():
+    found = Appearance(None, None, None, 0.0, EnvironmentMap(PLANES, np.zeros(3), 1.0, 0.0))
+    content = json.loads(encode(found))
+    content["room"]["planes"] = json.loads(encode(HandMask(0, 0, PLANES[:3], np.zeros(3))))["share"]
+    with pytest.raises(ValueError, match="texels"):
+        decode(Appearance, json.dumps(content).encode())
+    with pytest.raises(ValueError, match="place"):
+        EnvironmentMap(PLANES, np.zeros(2), 1.0, 0.0)
+
+
+def test_an_appearance_of_before_there_were_maps_has_none():
+    content = json.loads(encode(Appearance(None, None, None, 0.5)))
+    del content["room"]
+    old = json.dumps(content).encode()
+    assert upgrade(APPEARANCE_TOPIC, old) == encode(Appearance(None, None, None, 0.5))
 
 
 @pytest.mark.parametrize("topic", CHANNEL_TYPES)

@@ -80,6 +80,10 @@ def test_what_the_pictures_told_is_recorded_and_replayed(tmp_path, short_session
     assert last is not None
     assert last.light is not None
     assert decode(Appearance, encode(last)).light is not None
+    rooms = [each.appearance.room for each in recorded if each.appearance]
+    assert rooms[-1] is not None
+    news = sum(b'"room":{' in data for _, _, data in messages(path, APPEARANCE_TOPIC))
+    assert 1 <= news == len({room.timestamp for room in rooms if room})
 
 
 def test_a_session_without_pictures_cannot_start_from_what_they_told(short_session):

@@ -1,12 +1,20 @@
 """Anonymised sessions: sharp at the cube, blurred elsewhere, and the same in all other channels."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from cubeling.app.session import SessionFile, messages
-from cubeling.app.session.encoding import IMAGE_TOPIC
-from cubeling.app.workshop.anonymising import BLOCKS_ACROSS, blurred, sharp_region
+from cubeling.app.session.encoding import IMAGE_TOPIC, encode
+from cubeling.app.workshop.anonymising import BLOCKS_ACROSS, blurred, sharp_region, without_room
 from cubeling.tracking import Intrinsics, open_source
+from cubeling.tracking.appearance import (
+    ENVIRONMENT_PX,
+    Appearance,
+    EnvironmentMap,
+    PictureQuality,
+)
 
 EDGE = 0.06
 
@@ -43,6 +51,13 @@ def test_what_is_not_sharp_has_no_detail_left():
     step = 640 // BLOCKS_ACROSS
     neighbours = np.abs(np.diff(outside, axis=1)).mean()
     assert neighbours < np.abs(outside[:, step:] - outside[:, :-step]).mean() / 4
+
+
+def test_the_map_of_the_room_is_left_out():
+    planes = np.full((18 * ENVIRONMENT_PX, ENVIRONMENT_PX), 90, np.uint8)
+    seen = Appearance(None, None, PictureQuality(0.7, 2.0), 0.5)
+    shown = replace(seen, room=EnvironmentMap(planes, np.zeros(3), 1.0, 0.5))
+    assert without_room(encode(shown)) == encode(seen)
 
 
 @pytest.mark.slow(reason="a part of a recording is tracked, twice")

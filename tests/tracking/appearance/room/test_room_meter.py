@@ -1,0 +1,179 @@
+"""The map of the room: what the picture shows from where it is, and never black elsewhere."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cubeling.tracking import Intrinsics
+from cubeling.tracking.appearance import ENVIRONMENT_PX, EnvironmentMap, MeasuredLight, RoomMeter
+from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB
+from cubeling.tracking.appearance.room.cube_map import (
+    directions,
+    enlarged,
+    filled,
+    solid_angles,
+    texels_at,
+)
+from cubeling.tracking.appearance.room.room_meter import (
+    CENTRE_M,
+    MIN_LIGHT,
+    RENEWAL_INTERVAL_S,
+)
+from cubeling.tracking.geometry.projection import Projection
+
+SIZE = 640, 360
+LENS = Intrinsics.guess(SIZE)
+UNIT = directions(ENVIRONMENT_PX)
+
+
+def table_from(yaw=0.0, pitch=0.55, distance=0.6):
+    """Return the pose of a table in the middle of the picture, seen from above its front."""
+    down = np.array(
+        [[1, 0, 0], [0, -np.cos(pitch), np.sin(pitch)], [0, -np.sin(pitch), -np.cos(pitch)]]
+    )
+    turn = np.array([[np.cos(yaw), 0, np.sin(yaw)], [0, 1, 0], [-np.sin(yaw), 0, np.cos(yaw)]])
+    pose = np.eye(4)
+    pose[:3, :3] = down @ turn
+    pose[2, 3] = distance
+    return pose
+
+
+TABLE = table_from()
+
+
+def grey(value):
+    return np.full((SIZE[1], SIZE[0], 3), value, np.uint8)
+
+
+def light_of(found: EnvironmentMap):
+    """Return the linear light of all texels, (texels, 3) RGB."""
+    return LINEAR_FROM_SRGB[found.planes].reshape(3, -1).T
+
+
+def with_spot(place, colour=(0, 0, 255)):
+    """Return a dark picture with a spot of two centimetres at a place of the table frame."""
+    image = grey(20)
+    at = TABLE[:3, :3] @ place + TABLE[:3, 3]
+    column, row = Projection(LENS).project(at[None])[0].round().astype(int)
+    radius = round(0.01 * LENS.matrix[0, 0] / at[2])
+    image[row - radius : row + radius + 1, column - radius : column + radius + 1] = colour
+    return image
+
+
+@pytest.mark.parametrize("x", [-0.12, 0.1])
+@pytest.mark.parametrize("z", [-0.1, 0.06])
+def test_what_lies_on_the_table_is_where_it_is_seen_from_the_centre(x, z):
+    found = RoomMeter(LENS).update(with_spot(np.array([x, 0.0, z])), TABLE, None, 0.0)
+    light = light_of(found)
+    red = np.maximum(light[:, 0] - light[:, 1] - 0.1, 0.0)
+    seen = (red * solid_angles(ENVIRONMENT_PX)) @ UNIT
+    wanted = np.array([x, 0.0, z]) - CENTRE_M
+    cosine = seen @ wanted / np.linalg.norm(seen) / np.linalg.norm(wanted)
+    assert np.degrees(np.arccos(cosine)) < 2.0
+
+
+def test_what_is_far_is_on_the_side_of_the_picture_that_it_is_in():
+    image = grey(60)
+    image[:40, :120] = 255, 0, 0  # the upper left corner, above the horizon of this camera
+    level = table_from(pitch=0.1)
+    light = light_of(RoomMeter(LENS).update(image, level, None, 0.0))
+    blue = np.maximum(light[:, 2] - light[:, 0] - 0.1, 0.0) * (UNIT[:, 1] > 0)
+    x, y, z = blue @ UNIT / blue.sum()
+    assert x < -0.2
+    assert y > 0.05
+    assert z < -0.2
+
+
+def test_a_room_of_one_colour_is_that_everywhere():
+    found = RoomMeter(LENS).update(grey(140), TABLE, None, 0.0)
+    assert np.ptp(found.planes) <= 1
+    assert abs(int(found.planes[0, 0]) - 140) <= 1
+
+
+@pytest.mark.parametrize("value", [0, 3])
+def test_no_direction_that_was_never_seen_is_black(value):
+    light = light_of(RoomMeter(LENS).update(grey(value), TABLE, None, 0.0))
+    above = UNIT[:, 1] > 0.5  # which this camera does not see
+    assert light[above].min() > 0.9 * MIN_LIGHT
+
+
+def test_a_sheet_on_the_table_gets_the_light_that_was_measured():
+    ambient = np.array([0.5, 0.4, 0.3])
+    measured = MeasuredLight(np.array([0.0, -1.0, 0.0]), np.full(3, 0.4), ambient, 0.9)
+    found = RoomMeter(LENS).update(grey(120), TABLE, measured, 0.0)
+    share = solid_angles(ENVIRONMENT_PX) * np.maximum(UNIT[:, 1], 0.0)
+    assert share @ light_of(found) / share.sum() == pytest.approx(ambient, rel=0.03)
+
+
+def test_what_the_camera_saw_from_elsewhere_is_remembered():
+    meter, opposite = RoomMeter(LENS), table_from(yaw=np.pi, pitch=0.2)
+    meter.update(grey(180), table_from(pitch=0.2), None, 0.0)
+    found = light_of(meter.update(grey(60), opposite, None, 1.0))
+    alone = light_of(RoomMeter(LENS).update(grey(60), opposite, None, 1.0))
+    first, second = texels_at(np.array([[0.0, 0.02, -1.0], [0.0, 0.02, 1.0]]), ENVIRONMENT_PX)
+    assert found[first] == pytest.approx(LINEAR_FROM_SRGB[180], rel=0.05)
+    assert found[second] == pytest.approx(LINEAR_FROM_SRGB[60], rel=0.05)
+    assert alone[first] == pytest.approx(LINEAR_FROM_SRGB[60], rel=0.05)
+
+
+def test_a_picture_that_stays_makes_no_new_map_and_noise_neither():
+    meter, rng = RoomMeter(LENS), np.random.default_rng(1)
+    first = meter.update(grey(100), TABLE, None, 0.0)
+    for number in range(1, 30):
+        noisy = np.clip(rng.normal(100, 4, (*SIZE[::-1], 3)), 0, 255).astype(np.uint8)
+        assert meter.update(noisy, TABLE, None, number / 30) is first
+
+
+def test_maps_are_no_more_than_two_a_second():
+    meter, times = RoomMeter(LENS), []
+    for number in range(90):
+        found = meter.update(grey(40 + 2 * number), TABLE, None, number / 30)
+        if found.timestamp not in times:
+            times.append(found.timestamp)
+    assert len(times) > 4
+    assert np.diff(times).min() >= RENEWAL_INTERVAL_S - 1e-6
+
+
+def test_there_is_none_without_a_table_and_one_at_once_with_it():
+    meter = RoomMeter(LENS)
+    assert meter.update(grey(90), None, None, 0.0) is None
+    assert meter.update(grey(90), TABLE, None, 0.01) is not None
+
+
+def test_a_recording_that_is_wound_back_goes_on():
+    meter = RoomMeter(LENS)
+    meter.update(grey(90), TABLE, None, 50.0)
+    assert meter.update(grey(200), TABLE, None, 1.0).timestamp == 1.0
+
+
+def test_a_camera_that_does_not_see_the_table_knows_nothing():
+    away = TABLE.copy()
+    away[:3, :3] = away[:3, :3] @ np.diag([-1.0, 1.0, -1.0])
+    away[2, 3] = -5.0
+    assert RoomMeter(LENS).update(grey(90), away, None, 0.0) is None
+
+
+def test_guesses_are_between_what_is_known_and_next_to_it_the_same():
+    rng = np.random.default_rng(2)
+    light = rng.random((6, 8, 8, 3)).astype(np.float32)
+    known = (rng.random((6, 8, 8)) < 0.2).astype(np.float32)
+    guess = filled(light, known)
+    low, high = light[known > 0].min(axis=0), light[known > 0].max(axis=0)
+    assert (guess >= low - 1e-5).all()
+    assert (guess <= high + 1e-5).all()
+    alone = np.zeros_like(known)
+    alone[4, 3, 3] = 1.0
+    assert np.allclose(filled(light, alone), light[4, 3, 3])
+
+
+def test_enlarged_faces_have_no_seams():
+    coarse = directions(8).reshape(6, 8, 8, 3).astype(np.float32)
+    fine = enlarged(coarse, 64).reshape(-1, 3)
+    assert np.abs(fine - UNIT).max() < 0.05
+
+
+def test_planes_of_another_shape_are_refused():
+    found = RoomMeter(LENS).update(grey(90), TABLE, None, 0.0)
+    with pytest.raises(ValueError, match="no"):
+        replace(found, planes=found.planes[1:])

@@ -1,0 +1,211 @@
+"""What light comes from each direction in the room, gathered from the camera's picture."""
+
+import cv2
+import numpy as np
+
+from cubeling.tracking.appearance.appearance import (
+    ENVIRONMENT_PX,
+    EnvironmentMap,
+    MeasuredLight,
+)
+from cubeling.tracking.appearance.colour_space import LINEAR_FROM_SRGB
+from cubeling.tracking.appearance.room.cube_map import (
+    COARSE_PX,
+    FACES,
+    directions,
+    enlarged,
+    filled,
+    shrunk,
+    solid_angles,
+)
+from cubeling.tracking.geometry.arrays import Array, Floats, Image, Indices
+from cubeling.tracking.geometry.intrinsics import Intrinsics
+from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection
+
+CENTRE_M = np.array([0.0, 0.08, 0.0])
+"""Where the map is seen from, in the table frame [m]: half as high as a character stands."""
+
+REACH_M = 1.0
+"""How far the table reaches, and how far what stands around it is [m]: a desk, and its walls."""
+
+LOOK_INTERVAL_S, RENEWAL_INTERVAL_S = 0.1, 0.5
+"""Time from one look at the picture to the next, and least time from one map to the next."""
+
+MIN_CHANGE = 3.0
+"""Difference from the picture of the last map from which on there is a new one: the root of the
+mean square, of 255. The noise of a camera is less in a picture of so few pixels."""
+
+MAX_MOVE = 2e-3
+"""How much the numbers of the table's pose may change until directions are found again [m, 1]."""
+
+SMALL_WIDTH = 160
+"""Width of the picture that is looked at [px]: a texel is as wide as two to four of them."""
+
+SOFT_EDGE = 0.06
+"""Width of the edge of the picture in which it counts less and less, as a share of its width."""
+
+MEMORY_S = 60.0
+"""Time in which what is no more in the picture is forgotten."""
+
+MIN_LIGHT = 0.02
+"""Least light from a direction that was never seen: no wall is black."""
+
+FILL_GAINS = 0.5, 3.0
+"""Limits of the light from unseen directions beside that at the edges of what is seen."""
+
+_LINEAR = LINEAR_FROM_SRGB.astype(np.float32)
+_STEPS = 4096  # of linear light, from which the byte of sRGB is looked up
+_SRGB = np.rint(np.interp(np.arange(_STEPS) / (_STEPS - 1), _LINEAR, np.arange(256)))
+_SRGB_FROM_LINEAR = _SRGB.astype(np.uint8)
+
+
+class RoomMeter:
+    """Gathers the light from all directions, from picture to picture.
+
+    A pixel shows a place on the table, or on a sphere around it: that place, not the line of sight,
+    tells from which direction its light comes to a character. What the camera has seen from another
+    pose is remembered. What it never saw has the light of the nearest edges, blurred; above the
+    table, so much that a sheet on it gets the light from all around that was measured on paper.
+    """
+
+    def __init__(self, intrinsics: Intrinsics) -> None:
+        self._projection = Projection(intrinsics)
+        self._light: Floats = np.zeros((FACES * ENVIRONMENT_PX**2, 3), np.float32)
+        self._known: Floats = np.zeros(len(self._light), np.float32)
+        self._pose: Array | None = None  # for which `_texels`, `_pixels` and `_shares` hold
+        self._texels: Indices = np.zeros(0, np.intp)
+        self._pixels: Floats = np.zeros((0, 2), np.float32)
+        self._shares: Floats = np.zeros(0, np.float32)
+        self._last: Image | None = None  # small picture of the last map
+        self._map: EnvironmentMap | None = None
+        self._looked = self._renewed = -np.inf
+
+    def update(
+        self,
+        image: Image,
+        camera_from_table: Array | None,
+        light: MeasuredLight | None,
+        now: float,
+    ) -> EnvironmentMap | None:
+        """Take a picture into account and return the map, a new one where the picture has changed.
+
+        Parameters
+        ----------
+        image
+            The camera's picture, (H, W, 3) BGR.
+        camera_from_table
+            Pose of the table, (4, 4); None while it is not known.
+        light
+            The light on paper, if any was measured.
+        now
+            Time of the picture [s].
+
+        Returns
+        -------
+        None until the table was known.
+        """
+        if now < self._looked:  # a recording is wound back
+            self._looked = self._renewed = now - RENEWAL_INTERVAL_S
+        due = self._map is None or now - self._looked >= LOOK_INTERVAL_S - 1e-6
+        if camera_from_table is None or not due:
+            return self._map
+        self._looked = now
+        if now - self._renewed < RENEWAL_INTERVAL_S - 1e-6:
+            return self._map
+        height = max(image.shape[0] * SMALL_WIDTH // image.shape[1], 1)
+        small = np.asarray(cv2.resize(image, (SMALL_WIDTH, height)), np.uint8)
+        if self._differs(small) or self._has_moved(camera_from_table):
+            self._see(small, camera_from_table, now)
+            self._map = self._complete(light, now)
+            self._last, self._renewed = small, now
+        return self._map
+
+    def _differs(self, small: Image) -> bool:
+        last = self._last
+        if last is None or last.shape != small.shape:
+            return True
+        return bool(cv2.norm(small, last) > MIN_CHANGE * np.sqrt(small.size))
+
+    def _has_moved(self, camera_from_table: Array) -> bool:
+        return self._pose is None or bool(np.abs(camera_from_table - self._pose).max() > MAX_MOVE)
+
+    def _see(self, small: Image, camera_from_table: Array, now: float) -> None:
+        """Take what a picture shows into what is known."""
+        if self._has_moved(camera_from_table):
+            self._aim(camera_from_table)
+        if not len(self._texels):
+            return
+        if np.isfinite(self._renewed):
+            self._known *= np.float32(np.exp(-(now - self._renewed) / MEMORY_S))
+        scale = small.shape[1] / self._projection.size[0]
+        pixels = (self._pixels + 0.5) * np.float32(scale) - 0.5
+        seen = cv2.remap(
+            small, pixels[None], None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+        )
+        before = self._known[self._texels]
+        share = (self._shares / np.maximum(self._shares, before))[:, None]
+        self._light[self._texels] += share * (_LINEAR[seen[0, :, ::-1]] - self._light[self._texels])
+        self._known[self._texels] = np.maximum(before, self._shares)
+
+    def _aim(self, camera_from_table: Array) -> None:
+        """Find where in the picture the places are that light comes from."""
+        self._pose = camera_from_table.copy()
+        places = _places() @ camera_from_table[:3, :3].T + camera_from_table[:3, 3]
+        ahead = np.flatnonzero(places[:, 2] > MIN_DEPTH)
+        width, height = self._projection.size
+        matrix = self._projection.matrix
+        # A lens's polynomial may bend what is far outside of the picture into it.
+        straight = places[ahead, :2] / places[ahead, 2:] * matrix[[0, 1], [0, 1]] + matrix[:2, 2]
+        ahead = ahead[_inside(straight, width, height) > -0.1 * width]
+        pixels = self._projection.project(places[ahead])
+        margin = _inside(pixels, width, height)
+        kept = margin > 0.0
+        self._texels = ahead[kept]
+        self._pixels = pixels[kept].astype(np.float32)
+        self._shares = np.minimum(margin[kept] / (SOFT_EDGE * width), 1.0).astype(np.float32)
+
+    def _complete(self, light: MeasuredLight | None, now: float) -> EnvironmentMap | None:
+        """Return the map with what is unknown filled; None if nothing is known."""
+        side = ENVIRONMENT_PX
+        known = self._known.reshape(FACES, side, side, 1)
+        seen = self._light.reshape(FACES, side, side, 3)
+        share = shrunk(known, COARSE_PX)
+        if float(share.max()) < 1e-3:
+            return self._map
+        known_light = shrunk(known * seen, COARSE_PX)
+        guessed = np.maximum(
+            filled(known_light / np.maximum(share, 1e-6), share[..., 0]), MIN_LIGHT
+        )
+        if light is not None:
+            from_above = _from_above()
+            around = from_above @ known_light.reshape(-1, 3)
+            unseen = from_above @ ((1.0 - share) * guessed).reshape(-1, 3)
+            gain = np.clip((light.ambient - around) / np.maximum(unseen, 1e-6), *FILL_GAINS)
+            high = np.clip(0.5 + 2.0 * directions(COARSE_PX)[:, 1:2], 0.0, 1.0)
+            gains = np.asarray(1.0 + high * (gain - 1.0), np.float32).reshape(guessed.shape)
+            guessed = np.maximum(guessed * gains, MIN_LIGHT)
+        whole = seen * known + enlarged(guessed, side) * (1.0 - known)
+        steps = (np.clip(whole, 0.0, 1.0) * (_STEPS - 1) + 0.5).astype(np.intp)
+        planes = _SRGB_FROM_LINEAR[steps].transpose(3, 0, 1, 2).reshape(-1, side)
+        return EnvironmentMap(np.ascontiguousarray(planes), CENTRE_M, REACH_M, now)
+
+
+def _from_above() -> Array:
+    """Return the share of each coarse texel in the light on a sheet on the table, (texels,)."""
+    share = solid_angles(COARSE_PX) * np.maximum(directions(COARSE_PX)[:, 1], 0.0)
+    return np.asarray(share / share.sum())
+
+
+def _places() -> Array:
+    """Return where the light of each texel comes from, in the table frame, (texels, 3) [m]."""
+    unit = directions(ENVIRONMENT_PX)
+    below = unit[:, 1] < -CENTRE_M[1] / REACH_M
+    distance = np.full(len(unit), REACH_M)
+    distance[below] = CENTRE_M[1] / -unit[below, 1]
+    return CENTRE_M + distance[:, None] * unit
+
+
+def _inside(pixels: Array, width: int, height: int) -> Array:
+    """Return how far pixels (n, 2) are from the edges of a picture, below 0 outside [px]."""
+    x, y = pixels.T
+    return np.minimum(np.minimum(x + 0.5, width - 0.5 - x), np.minimum(y + 0.5, height - 0.5 - y))
