@@ -12,6 +12,7 @@ REALISM_CHOICES = {
     "hand": "the hand that holds the cube hides what is behind it",
     "light": "light and shadow fall as on the cube",
     "softness": "characters are as soft, as noisy and as hazy as the picture",
+    "room": "the room lights characters from all sides, and metal and wet eyes mirror it",
     "focus": "what is much nearer or further than the cube is out of focus, in the quality rich",
     "wrinkles": "skin wrinkles where a face moves",
     "blush": "a face flushes and pales with its emotion",

@@ -204,7 +204,14 @@ class StepRenderer:
         known = step.appearance
         if known is None:
             return view
-        return replace(view, hand=known.hand, light=known.light, softness=known.softness)
+        return replace(
+            view,
+            hand=known.hand,
+            light=known.light,
+            softness=known.softness,
+            room=known.room,
+            timestamp=known.timestamp,
+        )
 
     def _with_skin(self, drawn: DrawnBody, posed: PosedCharacter) -> SceneCharacter:
         shown = drawn.blood if "blush" in self._realism else 0.0

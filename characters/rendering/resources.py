@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cubeling.characters.rendering.camera_picture.haze import haze_table
 from cubeling.characters.rendering.camera_picture.light import Light
 from cubeling.characters.rendering.camera_picture.occlusion import corners_of, hidden_by_cube
+from cubeling.characters.rendering.environment.room import RoomLighting
 from cubeling.characters.rendering.geometry.character_cache import CharacterInstance
 from cubeling.characters.rendering.projection import (
     NEAR_M,
@@ -111,6 +112,9 @@ class FrameResources:
 
     characters: tuple[CharacterInstance, ...]
     """The visible characters, skinned on the graphics card."""
+
+    room: RoomLighting | None = None
+    """The light from all around, if there is a map of the room."""
 
     @property
     def scale(self) -> float:

@@ -83,6 +83,25 @@ class RoomLight(Protocol):
         """How certain its direction is, 0…1: an uncertain light does not replace the usual one."""
 
 
+class RoomMap(Protocol):
+    """The light from all directions, as it comes to one point over the table."""
+
+    @property
+    def planes(self) -> NDArray[np.uint8]:
+        """A cube map in the table frame, (3 · 6 · 64, 64), sRGB.
+
+        Red, then green, then blue of the faces +x, −x, +y, −y, +z, −z, turned as OpenGL has them.
+        """
+
+    @property
+    def centre(self) -> Array:
+        """The point, in the table frame, (3,) [m]."""
+
+    @property
+    def reach(self) -> float:
+        """How far the table reaches from there, and how far all else is [m]."""
+
+
 class Softness(Protocol):
     """How soft, noisy and hazy the camera's picture is; what is drawn becomes so too."""
 
@@ -157,6 +176,13 @@ class CameraView:
 
     softness: Softness | None = None
     """Blur and noise of the frame, if they were measured; left out, characters are drawn sharp."""
+
+    room: RoomMap | None = None
+    """The light from all around, if it was measured; left out, it has one colour from above and one
+    from below. One object is one map: a new one is faded in."""
+
+    timestamp: float = 0.0
+    """Time of the frame [s], by which that is done."""
 
     focus: Focus | None = None
     """Which depths are sharp; left out, all are. Only deferred shading blurs the others."""

@@ -12,6 +12,7 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.rendering.camera_picture.light import LightEstimator, paper_color
 from cubeling.characters.rendering.camera_picture.occlusion import visible_cubes
 from cubeling.characters.rendering.camera_picture.undistortion import Undistorter
+from cubeling.characters.rendering.environment.room import RoomMaps
 from cubeling.characters.rendering.geometry.character_cache import CharacterCache, PictureFineness
 from cubeling.characters.rendering.passes.by_quality import passes_for
 from cubeling.characters.rendering.passes.render_pass import RenderPass
@@ -80,6 +81,7 @@ class Stage:
         self._context = context
         self._undistorter = Undistorter(size)
         self._light = LightEstimator()
+        self._room = RoomMaps(context)
         self._quality = FULL
         self._layers = TargetCache(context, FULL.fineness)
         self._one_texel = context.texture((1, 1), 4)
@@ -112,6 +114,7 @@ class Stage:
     def forget(self) -> None:
         """Forget the light that was seen: the next picture is of another time or place."""
         self._light = LightEstimator()
+        self._room.forget()
 
     def expect(self, image: Image, matrix: Array, distortion: Array) -> None:
         """Begin with a frame that `draw` gets next, while the caller still finds out what is in it.
@@ -180,6 +183,7 @@ class Stage:
         for render_pass in self.passes:
             render_pass.release()
         self._characters.release()
+        self._room.release()
         self._layers.release()
         self._idle.release()
         self._one_texel.release()
@@ -202,6 +206,11 @@ class Stage:
         if table is None or not is_pinhole(view.matrix):
             return None
         self._idle.use()
+        characters = self._characters.skin(
+            scene.characters,
+            PictureFineness(table, float(matrix[1, 1]), self._quality.max_error_px),
+        )
+        mirrored = any(each.skinned.mirrors for each in characters)
         return FrameResources(
             context=self._context,
             layers=self._layers,
@@ -213,8 +222,6 @@ class Stage:
             light=light,
             softness=self._softness(view),
             cubes=visible_cubes(view.occluders, matrix, self.size),
-            characters=self._characters.skin(
-                scene.characters,
-                PictureFineness(table, float(matrix[1, 1]), self._quality.max_error_px),
-            ),
+            characters=characters,
+            room=self._room.update(view.room, view.timestamp, mirrored),
         )

@@ -113,6 +113,11 @@ class SkinnedCharacter:
         return surfaces[: level.awake - len(level.materials) or None] if self._asleep else surfaces
 
     @property
+    def mirrors(self) -> bool:
+        """Whether any of its surfaces mirrors what is around."""
+        return any(each.mirrors for each in self.surfaces)
+
+    @property
     def caster_runs(self) -> tuple[CasterRun, ...]:
         """The triangles that cast its shadow in the pose of the last `skin`."""
         return tuple(run for run in self.geometry.caster_runs if not (self._asleep and run.dormant))

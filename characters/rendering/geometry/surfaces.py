@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering.environment.room import ROOM_UNIT
 from cubeling.characters.rendering.geometry.face_split import FaceSplit
 from cubeling.characters.rendering.geometry.face_texture import FaceTexture
 from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
@@ -30,6 +31,13 @@ distance from the lamp, and the depths of its hidden sides."""
 VERTEX_LIT = "VERTEX_LIT"
 """Feature of programs that shade vertices, not fragments, for surfaces that allow it."""
 
+ROOM, MIRRORED = "ROOM", "MIRRORED"
+"""Features of programs that light a surface by a map of the room, and that mirror it in there."""
+
+MIN_MIRROR_METALNESS, MAX_MIRROR_ROUGHNESS = 0.2, 0.45
+"""Metalness from which on a surface mirrors more of the room than its mean light, and roughness
+below which any does; in `room.glsl` too."""
+
 CLIPPED = "CLIPPED"
 """Feature of programs that cut off what is outside of the cube that a character stands in."""
 
@@ -47,6 +55,9 @@ SKIN_FEATURE = "SKIN"
 
 MAPPED_FEATURES = {"TEXTURED", "SURFACE", "BUMPS", "SHADE", FACE_FEATURE, SKIN_FEATURE}
 """Features that need texture coordinates."""
+
+PLACED_FEATURES = {"BUMPS", GEOMETRY, CASTER, BEHIND, FACE_FEATURE, MIRRORED}
+"""Features that need the place in the table frame."""
 
 
 @dataclass(frozen=True)
@@ -80,9 +91,19 @@ class Surface:
         shaded alone.
         """
         material = self.material
+        mirror = MIRRORED in wanted and self.mirrors
         plain = self.features <= {"GLOW", SKIN_FEATURE} and not material.double_sided
-        plain &= material.roughness >= MIN_VERTEX_ROUGHNESS
-        return self.features | (wanted if plain else wanted - {VERTEX_LIT})
+        plain &= material.roughness >= MIN_VERTEX_ROUGHNESS and not mirror
+        left_out = {name for name, kept in ((VERTEX_LIT, plain), (MIRRORED, mirror)) if not kept}
+        return self.features | (wanted - left_out)
+
+    @property
+    def mirrors(self) -> bool:
+        """Whether it mirrors more than the mean of what is around it, at least in parts."""
+        material = self.material
+        metal = material.metallic >= MIN_MIRROR_METALNESS
+        smooth = material.roughness < MAX_MIRROR_ROUGHNESS or "SURFACE" in self.features
+        return (metal or smooth) and material.toon is None
 
     def render(
         self, context: moderngl.Context, array: moderngl.VertexArray, both_sides: bool = False
@@ -279,9 +300,11 @@ def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moder
     if not features & {GEOMETRY, CASTER}:
         features -= {SKIN_FEATURE}
     if VERTEX_LIT in features:
-        return programs.load("vertex_lit", "vertex_lit", *sorted(features & {"GLOW", CLIPPED}))
+        return programs.load(
+            "vertex_lit", "vertex_lit", *sorted(features & {"GLOW", CLIPPED, ROOM})
+        )
     mapped = {"MAPPED"} if features & MAPPED_FEATURES else set()
-    placed = {"PLACED"} if features & {"BUMPS", GEOMETRY, CASTER, BEHIND, FACE_FEATURE} else set()
+    placed = {"PLACED"} if features & PLACED_FEATURES else set()
     program = programs.load("character", "character", *sorted(features | mapped | placed))
-    set_uniforms(program, **TEXTURE_UNITS)
+    set_uniforms(program, **TEXTURE_UNITS, room_map=ROOM_UNIT)
     return program

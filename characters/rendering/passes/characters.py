@@ -5,7 +5,12 @@ from collections.abc import Sequence
 import moderngl
 
 from cubeling.characters.rendering.camera_picture.occlusion import unit_cube_from_table
-from cubeling.characters.rendering.geometry.surfaces import CLIPPED, VERTEX_LIT
+from cubeling.characters.rendering.geometry.surfaces import (
+    CLIPPED,
+    MIRRORED,
+    ROOM,
+    VERTEX_LIT,
+)
 from cubeling.characters.rendering.passes.cube_window import set_clipping
 from cubeling.characters.rendering.passes.render_pass import RenderPass
 from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
@@ -18,16 +23,20 @@ class CharacterPass(RenderPass):
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Draw all characters, shaded, on the character layer."""
         layer.use()
-        light = frame.light
+        light, room, features = frame.light, frame.room, {VERTEX_LIT}
+        if room is not None:
+            room.use()
+            features |= {ROOM} if room.texture is None else {ROOM, MIRRORED}
         self._render(
             frame,
             layer,
-            frozenset([VERTEX_LIT]),
+            frozenset(features),
             eye=frame.camera_position,
             to_light=light.to_light,
             key=light.key,
             sky=light.sky,
             ground=light.ground,
+            **({} if room is None else room.uniforms(light)),
         )
 
     def _render(

@@ -62,6 +62,9 @@ layout(location = 3) out vec4 shade_metal;  // colour of the toon shade, or whet
 #else
 #include "shading"
 #include "encoding"
+#ifdef ROOM
+#include "room"
+#endif
 #ifdef TOON
 uniform float shade_shift;
 uniform float toony;
@@ -101,11 +104,25 @@ void main() {
 #else
     float up = 0.5 + 0.5 * n.y;
 #ifdef TOON
+#ifdef ROOM
+    vec3 around = mix(light_of_room(n), irradiance[0], evenness) * left_near_table(mix(up, 0.5, evenness), above);
+#else
     vec3 around = light_around(mix(up, 0.5, evenness), above);
+#endif
     Reflected light = reflected_by_toon(albedo, surface_shade(), shade_shift, toony, n, around);
+#else
+#ifdef ROOM
+    Reflected light = reflected(albedo, finish.y, finish.x, n, toward, vec3(0.0));
+    vec3 around = light_of_room_near(n, above), seen = around;
+#ifdef MIRRORED
+    vec3 way = reflect(-toward, n);
+    seen = mirrored_room(place, way, finish.x) * left_near_table(0.5 + 0.5 * way.y, above);
+#endif
+    light.ambient = reflected_of_room(albedo, finish.y, finish.x, dot(n, toward), around, seen);
 #else
     vec3 around = light_around(up, above);
     Reflected light = reflected(albedo, finish.y, finish.x, n, toward, around);
+#endif
 #endif
     vec3 sum = light.diffuse + light.specular + light.ambient;
 #ifdef GLOW

@@ -5,6 +5,10 @@
 #include "geometry_buffer"
 #include "shading"
 #include "near_table"
+#ifdef ROOM
+#include "room"
+uniform mat4 table_from_camera;
+#endif
 #ifdef VISIBILITY
 #include "visibility"
 #endif
@@ -41,11 +45,27 @@ void main() {
 #endif
     Reflected light;
     if (toon.x > 0.5) {
+#ifdef ROOM
+        vec3 around = mix(light_of_room(mat3(table_from_camera) * n.xyz), irradiance[0], toon.w);
+        around *= left_near_table(mix(rise, 0.5, toon.w), above);
+#else
         vec3 around = light_around(mix(rise, 0.5, toon.w), above);
+#endif
         light = reflected_by_toon(albedo.rgb, shade.rgb, toon.y, toon.z, n.xyz, around);
     } else {
+#ifdef ROOM
+        light = reflected(albedo.rgb, shade.w, albedo.w, n.xyz, toward, vec3(0.0));
+        vec3 around = light_of_room_near(mat3(table_from_camera) * n.xyz, above), seen = around;
+#ifdef MIRRORED
+        vec3 way = mat3(table_from_camera) * reflect(-toward, n.xyz);
+        vec3 mirrored = mirrored_room((table_from_camera * vec4(p, 1.0)).xyz, way, albedo.w);
+        if (is_mirror(shade.w, albedo.w)) seen = mirrored * left_near_table(0.5 + 0.5 * way.y, above);
+#endif
+        light.ambient = reflected_of_room(albedo.rgb, shade.w, albedo.w, dot(n.xyz, toward), around, seen);
+#else
         vec3 around = light_around(rise, above);
         light = reflected(albedo.rgb, shade.w, albedo.w, n.xyz, toward, around);
+#endif
     }
     vec3 visible = vec3(1.0);
     float open = 1.0;

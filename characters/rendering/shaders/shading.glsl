@@ -15,11 +15,18 @@ struct Reflected {
 
 // Light from all around on a surface that is turned upwards by `up`, 0…1. Near the feet, the character occludes
 // the table, and the table the character: `above` is the height over it, as a share of what counts as near.
-vec3 light_around(float up, float above) {
+float near_table(float above) {
     float near = clamp(above, 0.0, 1.0);
-    near *= 2.0 - near;
-    float open = mix(0.45 + 0.45 * up, 1.0, near);
-    return mix(ground * (0.55 + 0.45 * near), sky, up) * open;
+    return near * (2.0 - near);
+}
+
+float openness(float up, float near) {
+    return mix(0.45 + 0.45 * up, 1.0, near);
+}
+
+vec3 light_around(float up, float above) {
+    float near = near_table(above);
+    return mix(ground * (0.55 + 0.45 * near), sky, up) * openness(up, near);
 }
 
 // Skin, cloth and plastic scatter light around the terminator: a wrap of a quarter.

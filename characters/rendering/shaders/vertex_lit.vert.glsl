@@ -15,6 +15,9 @@ uniform vec3 glow;
 #include "near_table"
 #include "shading"
 #include "encoding"
+#ifdef ROOM
+#include "room"
+#endif
 
 in vec3 position;
 in vec3 normal;
@@ -23,9 +26,16 @@ in vec4 color;
 out vec3 shade;             // as the picture shows it
 
 void main() {
-    vec3 around = light_around(0.5 + 0.5 * normal.y, position.y / (NEAR_TABLE * height));
-    Reflected light = reflected(
-        base_color * color.rgb, metallic, roughness, normal, normalize(eye - position), around);
+    vec3 albedo = base_color * color.rgb, toward = normalize(eye - position);
+    float above = position.y / (NEAR_TABLE * height);
+#ifdef ROOM
+    Reflected light = reflected(albedo, metallic, roughness, normal, toward, vec3(0.0));
+    vec3 around = light_of_room_near(normal, above);
+    light.ambient = reflected_of_room(albedo, metallic, roughness, dot(normal, toward), around, around);
+#else
+    vec3 around = light_around(0.5 + 0.5 * normal.y, above);
+    Reflected light = reflected(albedo, metallic, roughness, normal, toward, around);
+#endif
     vec3 sum = light.diffuse + light.specular + light.ambient;
 #ifdef GLOW
     sum += glow;

@@ -1,0 +1,1 @@
+"""The light from all around, prepared for surfaces that scatter or mirror it."""

@@ -1,0 +1,270 @@
+"""The room's light on characters: white in white, from the right side, and no pop."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from cubeling.characters.model.mesh import Material
+from cubeling.characters.rendering import QUALITIES, Stage, target
+from cubeling.characters.rendering.camera_picture.light import (
+    LINEAR_FROM_SRGB,
+    TO_LIGHT,
+    Light,
+    LightEstimator,
+)
+from cubeling.characters.rendering.environment import room as fading
+from cubeling.characters.rendering.environment.cube_map import (
+    directions,
+    harmonics,
+    irradiance,
+    pyramid,
+)
+from cubeling.characters.rendering.environment.reflections import (
+    PARTS,
+    TILES,
+    filtered,
+    octahedral_directions,
+)
+from tests.characters.rendering.shapes import Still, ball
+from tests.characters.rendering.watch import WatchPass
+
+UNIT = directions(64)
+WHITE = np.ones((len(UNIT), 3))
+FULL, RICH = QUALITIES["full"], replace(QUALITIES["rich"], effects=frozenset())
+
+
+@dataclass(frozen=True)
+class Painted:
+    """A map of the room."""
+
+    planes: NDArray[np.uint8]
+    centre: NDArray[np.float64]
+    reach: float = 1.0
+
+
+def painted(light):
+    """Return a map of linear light, (texels, 3) RGB."""
+    values = np.rint(np.interp(light, LINEAR_FROM_SRGB, np.arange(256))).astype(np.uint8)
+    return Painted(values.T.reshape(-1, 64), np.array([0.0, 0.08, 0.0]))
+
+
+def with_card(side, colour=(1.0, 0.0, 0.0), size=0.9):
+    """Return a grey room with a card on one side."""
+    light = np.full((len(UNIT), 3), 0.2)
+    light[UNIT @ side > size] = colour
+    return painted(light)
+
+
+@pytest.fixture
+def draw(ctx, view, monkeypatch):
+    """Draw surfaces with no lamp and exact colours: linear light, (height, width, 3), and 0."""
+    white = np.ones(3)
+    monkeypatch.setattr(
+        LightEstimator, "update", lambda *given: Light(0.0 * white, white, white, TO_LIGHT)
+    )
+    monkeypatch.setattr(
+        target,
+        "_texture",
+        lambda context, size: context.texture(size, 4, dtype="f4"),
+    )
+    stages = []
+
+    def draw_room(material, room, quality=FULL):
+        stage = Stage(ctx, view.image.shape[1::-1])
+        stages.append(stage)
+        stage.quality = quality
+        watch = WatchPass()
+        stage.passes.append(watch)
+        # Above what counts as near the table.
+        stage.draw(
+            replace(view, room=room),
+            [Still((ball(material, at=(0, 0.08, 0), radius=0.04),)).posed()],
+        )
+        layer = watch.frame.layer
+        columns, rows = layer.texels
+        data = layer.target.framebuffer.read((0, 0, columns, rows), components=4, dtype="f4")
+        texels = np.frombuffer(data, np.float32).reshape(rows, columns, 4)
+        return linear(texels[..., 2::-1]), texels[..., 3] > 0
+
+    yield draw_room
+    for stage in stages:
+        stage.release()
+
+
+def linear(shown):
+    """Return the light that is shown as a value, 0…1: the inverse of encoding.glsl."""
+    light = np.linspace(0.0, 1.3, 4000)
+    shoulder = light * 1.06 / (1.0 + 0.12 * light)
+    root = np.sqrt(shoulder)
+    value = 0.82443678 * root + 0.30650353 * np.sqrt(root) - 0.05245525 * shoulder - 0.07884886
+    return np.interp(shown, value, light)
+
+
+@pytest.mark.parametrize("quality", [FULL, RICH], ids=["forward", "deferred"])
+@pytest.mark.parametrize("metallic", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize("roughness", [0.0, 0.2, 0.5, 0.8, 1.0])
+def test_the_white_furnace_loses_nothing(draw, metallic, roughness, quality):
+    """All light that falls on something white leaves it, at every angle: it is not seen."""
+    light, drawn = draw(Material(metallic=metallic, roughness=roughness), painted(WHITE), quality)
+    assert drawn.sum() > 2000
+    assert np.abs(light[drawn] - 1.0).max() < 0.005
+
+
+@pytest.mark.parametrize("side", [(-1.0, 0.2, 0.3), (1.0, 0.2, 0.3), (0.0, 1.0, 0.2)])
+def test_a_card_is_seen_in_metal_on_its_side(draw, view, side):
+    side = np.array(side) / np.linalg.norm(side)
+    light, drawn = draw(Material(metallic=1.0, roughness=0.2), with_card(side))
+    red = np.maximum(light[..., 0] - light[..., 1], 0.0) * drawn
+    rows, columns = np.nonzero(drawn)
+    middle = np.array([columns.mean(), rows.mean()])
+    seen = (
+        np.array(
+            [
+                (red.sum(axis=0) @ np.arange(red.shape[1])),
+                (red.sum(axis=1) @ np.arange(red.shape[0])),
+            ]
+        )
+        / red.sum()
+    )
+    radius = np.sqrt(drawn.sum() / np.pi)
+    # The normal half way between the card and the camera.
+    camera = -view.camera_from_table[:3, :3].T @ view.camera_from_table[:3, 3] - (0, 0.08, 0)
+    normal = side + camera / np.linalg.norm(camera)
+    normal = view.camera_from_table[:3, :3] @ (normal / np.linalg.norm(normal))
+    assert (seen - middle) / radius == pytest.approx(normal[:2], abs=0.12)
+
+
+def test_both_ways_of_lighting_give_the_same_picture(draw):
+    rng = np.random.default_rng(3)
+    light = np.repeat(rng.random((6, 8, 8, 3)), 8, axis=1).repeat(8, axis=2).reshape(-1, 3)
+    for material in (Material(metallic=1.0, roughness=0.2), Material(roughness=0.7)):
+        forward, drawn = draw(material, painted(light))
+        later, _ = draw(material, painted(light), RICH)
+        assert np.abs(forward - later)[drawn].max() < 0.02
+
+
+def test_scattered_light_is_as_much_as_without_a_map(draw):
+    """The map tells where light comes from, not how much: energy is preserved."""
+    uneven = np.where(UNIT[:, :1] > 0.0, [0.8, 0.4, 0.2], [0.1, 0.2, 0.4])
+    sphere = directions(16)
+    coefficients = irradiance(pyramid(painted(uneven).planes))
+    lighting = fading.RoomLighting(coefficients, np.zeros(4), None)
+    light = Light(np.zeros(3), np.array([0.5, 0.4, 0.3]), np.array([0.1, 0.2, 0.3]), TO_LIGHT)
+    falling = harmonics(sphere) @ lighting.uniforms(light)["irradiance"]
+    share = np.abs(sphere).max(axis=1) ** 3
+    mean = share @ falling / share.sum()
+    assert mean == pytest.approx(0.5 * (light.sky + light.ground), rel=1e-3)
+
+
+def test_harmonics_give_the_cosine_mean_of_the_light():
+    """Of smooth light exactly; within a few percent of any (Ramamoorthi and Hanrahan, 2001)."""
+    smooth = 0.4 + 0.3 * UNIT @ np.array([0.5, 0.6, -0.62])
+    found = irradiance(pyramid(painted(np.repeat(smooth[:, None], 3, axis=1)).planes))
+    normals = np.array([[0.0, 1.0, 0.0], [0.6, 0.0, 0.8], [-1.0, 0.0, 0.0]])
+    share = np.abs(UNIT).max(axis=1) ** 3
+    for normal, light in zip(normals, harmonics(normals) @ found, strict=True):
+        weight = share * np.maximum(UNIT @ normal, 0.0)
+        assert light == pytest.approx(np.full(3, weight @ smooth / weight.sum()), rel=0.01)
+
+
+def test_a_map_of_one_colour_is_that_at_every_roughness():
+    texels = filtered(pyramid(painted(np.full_like(WHITE, 0.5)).planes))
+    value = LINEAR_FROM_SRGB[188]
+    for side, first in TILES:
+        tile = texels[first - 1 : first + side + 1, : side + 2]
+        assert tile == pytest.approx(value, rel=1e-5)
+
+
+def test_rough_surfaces_mirror_a_lobe_around_the_direction():
+    lamp = np.array([0.3, 0.5, -0.81])
+    texels = filtered(pyramid(with_card(lamp, (1.0, 1.0, 1.0), 0.98).planes))
+    brightest = []
+    for side, first in TILES:
+        tile = texels[first : first + side, 1 : side + 1, 0].ravel()
+        centre = tile.argmax() if side > 16 else None
+        brightest.append(float(tile.max()))
+        if centre is not None:
+            towards = octahedral_directions(side)[centre, 0]
+            assert np.degrees(np.arccos(min(towards @ lamp, 1.0))) < 14.0
+    assert brightest == sorted(brightest, reverse=True)
+
+
+def test_a_rim_goes_on_where_the_octahedron_does():
+    texels = filtered(pyramid(painted(0.5 + 0.4 * UNIT).planes))
+    side, first = TILES[1]
+    tile = texels[first - 1 : first + side + 1, : side + 2]
+    inner = tile[1:-1, 1:-1]
+    step = np.abs(np.diff(inner, axis=0)).max()
+    for rim, edge in ((tile[0, 1:-1], inner[0]), (tile[1:-1, -1], inner[:, -1])):
+        assert np.abs(rim - edge).max() < 1.5 * step
+
+
+def shown_by(maps, room, now, mirrored=True):
+    lighting = maps.update(room, now, mirrored)
+    assert lighting is not None
+    return lighting.irradiance[0, 0]
+
+
+def test_a_new_map_fades_in_and_never_back(ctx):
+    maps = fading.RoomMaps(ctx)
+    dark, bright = painted(np.full_like(WHITE, 0.1)), painted(np.full_like(WHITE, 0.8))
+    before = shown_by(maps, dark, 0.0)
+    values = [shown_by(maps, bright, 0.04 * (number + 1)) for number in range(30)]
+    steps = np.diff([before, *values])
+    assert values[PARTS - 2] == before  # it is being filtered
+    assert values[-1] == pytest.approx(0.8, abs=0.01)
+    assert (steps >= 0.0).all()
+    assert steps.max() < 1.2 * (values[-1] - before) * 0.04 / fading.FADE_S
+    texture = np.frombuffer(maps.update(bright, 1.3, True).texture.read(), np.float32)
+    assert texture.max() == pytest.approx(values[-1], abs=0.01)
+    maps.release()
+
+
+def test_a_map_that_comes_during_a_fade_goes_on_from_what_is_shown(ctx):
+    maps = fading.RoomMaps(ctx)
+    rooms = [painted(np.full_like(WHITE, level)) for level in (0.1, 0.9, 0.2)]
+    shown_by(maps, rooms[0], 0.0)
+    values = [shown_by(maps, rooms[1 + (number > 12)], 0.04 * number) for number in range(1, 60)]
+    assert np.abs(np.diff(values)).max() < 0.12
+    assert max(values) < 0.9
+    assert values[-1] == pytest.approx(0.2, abs=0.01)
+    maps.release()
+
+
+def test_nothing_is_filtered_where_nothing_mirrors(ctx, monkeypatch):
+    asked = []
+    monkeypatch.setattr(fading, "filtered", asked.append)
+    monkeypatch.setattr(fading, "ReflectionFilter", asked.append)
+    maps = fading.RoomMaps(ctx)
+    for number in range(30):
+        room = painted(np.full_like(WHITE, 0.1 + 0.02 * number))
+        assert maps.update(room, 0.1 * number, False).texture is None
+    assert not asked
+
+
+def test_the_first_mirror_sees_the_newest_map_at_once(ctx):
+    maps = fading.RoomMaps(ctx)
+    maps.update(painted(np.full_like(WHITE, 0.3)), 0.0, False)
+    newest = painted(np.full_like(WHITE, 0.6))
+    texture = maps.update(newest, 0.1, True).texture
+    assert texture is not None
+    assert np.frombuffer(texture.read(), np.float32).max() == pytest.approx(0.6, abs=0.01)
+    maps.release()
+
+
+def test_after_a_step_in_time_nothing_fades(ctx):
+    maps = fading.RoomMaps(ctx)
+    dark, bright = painted(np.full_like(WHITE, 0.1)), painted(np.full_like(WHITE, 0.8))
+    shown_by(maps, dark, 10.0)
+    assert shown_by(maps, bright, 3.0) == pytest.approx(0.8, abs=0.01)
+    maps.release()
+
+
+def test_a_stage_without_a_map_draws_as_before(stage, view, pawn):
+    plain = stage.draw(view, [pawn.posed()])
+    stage.forget()
+    stage.draw(replace(view, room=painted(np.full_like(WHITE, 0.3))), [pawn.posed()])
+    stage.forget()
+    assert np.array_equal(stage.draw(view, [pawn.posed()]), plain)
