@@ -1,20 +1,13 @@
 """A recorded session: all that is read of it, except for the camera's frames."""
 
 import json
-import os
-from collections.abc import Collection, Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from functools import cached_property
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
-from typing import Any, BinaryIO, Self
 
-from mcap.reader import McapReader, NonSeekingReader, SeekingReader
-from mcap.summary import Summary
-
-from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.spoken_line import Lines, SpokenLine
@@ -24,22 +17,17 @@ from cubeling.app.session.encoding import (
     APPEARANCE_TOPIC,
     CLOCK_RECORD,
     CLOCK_ZERO,
-    FORMAT_KEY,
     IMAGE_TOPIC,
     INPUTS_TOPIC,
     LINE_TOPIC,
     MESSAGE_TYPES,
     PLAYED_RECORD,
-    SESSION_FORMAT,
     SESSION_RECORD,
-    decode,
     decode_sound_message,
     line_topic,
     message_type,
     sound_topic,
 )
-from cubeling.app.session.file_records import READ_ERRORS, is_whole, metadata_of
-from cubeling.app.session.file_start import open_session_file
 from cubeling.app.session.info import SessionInfo
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.app.session.labels import (
@@ -49,6 +37,7 @@ from cubeling.app.session.labels import (
     corrected_labels,
     recorded_marks,
 )
+from cubeling.app.session.message_file import Message, MessageFile
 from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
 from cubeling.characters import CharacterCommand, SpeechIntent
 from cubeling.characters.speech import Samples
@@ -69,56 +58,9 @@ FIELD_OF_TOPIC = {
 }
 """The field of `ReplayInputs` for each channel, in the order of the stages after the camera."""
 
-Message = tuple[str, float, bytes]
-"""Topic, timestamp [s] and document of a message."""
 
-
-class SessionFile:
-    """A recorded session, opened once for all that is read of it; close it after use.
-
-    Parameters
-    ----------
-    path
-        The .mcap file.
-    salvage
-        Whether to take the intact part of a session that was cut off, instead of refusing it.
-    opened
-        The same file, as `open_session_file` returned it; None to open it.
-
-    Raises
-    ------
-    AppError
-        The file cannot be read, is no session, or was recorded by a newer version.
-    """
-
-    def __init__(
-        self, path: Path, *, salvage: bool = False, opened: BinaryIO | None = None
-    ) -> None:
-        self.path, self._salvage = path, salvage
-        self._file = opened or open_session_file(path)
-        self._is_whole = is_whole(self._file)
-        # No record is longer than the file: a damaged length takes no memory.
-        self._size = self._file.seek(0, os.SEEK_END)
-        self._metadata = metadata_of(self._file, self._size)
-        version = self._metadata.get(SESSION_RECORD, {}).get(FORMAT_KEY, "0")
-        if not version.isdecimal() or int(version) > SESSION_FORMAT:
-            self.close()
-            raise AppError(
-                f"the session '{path}' has the format {version:.20}, and this Cubeling reads up to "
-                f"{SESSION_FORMAT}: update it"
-            )
-        self.format = int(version)
-        """The version of its format; 0 before there were versions."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Close the file; a second call does nothing."""
-        self._file.close()
+class SessionFile(MessageFile):
+    """A recorded session, opened once for all that is read of it; close it after use."""
 
     @cached_property
     def info(self) -> SessionInfo:
@@ -129,100 +71,28 @@ class SessionFile:
         AppError
             The file is damaged, names no scenario, or was cut off and is not to be salvaged.
         """
-        if self._is_whole and not self._salvage:
-            frames, seconds = self._indexed_frames()
-        else:
-            frames, seconds = self._readable_frames()
-        about = self._metadata.get(SESSION_RECORD, {})
+        frames, seconds = self.count_frames()
+        about = self.metadata.get(SESSION_RECORD, {})
         if "scenario" not in about:
             raise AppError(f"'{self.path}' names no scenario: it was not recorded by Cubeling")
         try:
             options = SessionOptions.from_metadata(about, str(self.path))
         except ValueError as error:
             raise AppError(f"cannot read the session '{self.path}': {error}") from None
-        clock_zero = self._metadata.get(CLOCK_RECORD, {}).get(CLOCK_ZERO, "")
+        clock_zero = self.metadata.get(CLOCK_RECORD, {}).get(CLOCK_ZERO, "")
         labels = self.labels
         names = {name: getattr(labels, name) for name in LABEL_NAMES}
         options = replace(options, **names)
-        played = self._metadata.get(PLAYED_RECORD, {})
+        played = self.metadata.get(PLAYED_RECORD, {})
         has_video = about.get("video", "yes") != "no"
         return SessionInfo(options, frames, seconds, played, labels, has_video, clock_zero)
 
     @cached_property
     def labels(self) -> SessionLabels:
         """Who played, as it was corrected since, else as it was said; raises AppError."""
-        about = self._metadata.get(SESSION_RECORD, {})
+        about = self.metadata.get(SESSION_RECORD, {})
         participant, condition, notes = (about.get(name, "") for name in LABEL_NAMES)
         return corrected_labels(self.path, SessionLabels(participant, condition, notes))
-
-    def messages(self, *topics: str) -> Iterator[Message]:
-        """Yield (topic, timestamp [s], bytes) in the order of the file, for some topics or all.
-
-        Of a file that was cut off, yield what can be read.
-        """
-        with ExitStack() as closing:
-            if self._is_whole:
-                # Its index leads straight to the chunks that hold a topic, wherever another reader
-                # of the same file has gone in between.
-                self._file.seek(0)
-                reader: McapReader = SeekingReader(self._file, True, record_size_limit=self._size)
-            else:
-                own = closing.enter_context(open_session_file(self.path))
-                own.seek(0)
-                reader = NonSeekingReader(own, True, record_size_limit=self._size)
-            with suppress(*READ_ERRORS):
-                for _, channel, message in reader.iter_messages(
-                    topics=topics or None, log_time_order=False
-                ):
-                    yield channel.topic, message.log_time / 1e9, message.data
-
-    def decode_messages(self, kinds: Mapping[str, type[Any]]) -> Iterator[tuple[str, float, Any]]:
-        """Yield (topic, timestamp [s], message) as `messages` does, for the types of some topics.
-
-        Raises
-        ------
-        AppError
-            A message is not what a recorder writes.
-        """
-        for topic, time, data in self.messages(*kinds):
-            with self._named_message(topic, time):
-                message = decode(kinds[topic], data)
-            yield topic, time, message
-
-    @contextmanager
-    def _named_message(self, topic: str, time: float) -> Iterator[None]:
-        """Name the message of what a block refuses."""
-        try:
-            yield
-        except (ValueError, LookupError, TypeError, AttributeError) as error:
-            reason = " ".join(str(error).split())
-            raise AppError(
-                f"cannot read the session '{self.path}': {topic} at {time:.3f} s: "
-                f"{reason if reason.isprintable() else ascii(reason)}"
-            ) from error
-
-    def has(self, *topics: str) -> bool:
-        """Return whether there are messages on all of some channels."""
-        return all(next(self.messages(topic), None) is not None for topic in topics)
-
-    @cached_property
-    def channels(self) -> tuple[str, ...]:
-        """The channels between camera and picture, those of its cast too.
-
-        Raises
-        ------
-        AppError
-            The file is damaged.
-        """
-        if self._is_whole:
-            try:
-                summary = self._index()[1]
-            except READ_ERRORS as error:
-                raise AppError(f"cannot read the session '{self.path}': {error}") from error
-            topics = {each.topic for each in summary.channels.values()}
-        else:
-            topics = {topic for topic, _, _ in self.messages()}
-        return tuple(sorted(topic for topic in topics if message_type(topic) is not None))
 
     @property
     def has_channels(self) -> bool:
@@ -240,7 +110,7 @@ class SessionFile:
         """
         found = []
         for topic, time, data in self.messages("/events"):
-            with self._named_message(topic, time):
+            with self.named_message(topic, time):
                 found.append((time, str(json.loads(data)["event"])))
         return found
 
@@ -332,7 +202,7 @@ class SessionFile:
         topics = dict.fromkeys(topic for topic, _ in places)
         for topic, time, data in self.messages(*topics) if topics else ():
             if (topic, time) in places:
-                with self._named_message(topic, time):
+                with self.named_message(topic, time):
                     rate, sound = decode_sound_message(data)
                 yield (topic, time), rate, sound
 
@@ -388,43 +258,6 @@ class SessionFile:
             for time in sorted(asked | speech.keys())
         }
 
-    def _index(self) -> tuple[SeekingReader, Summary]:
-        """Return a reader of a whole session, and its index; raises one of `READ_ERRORS`."""
-        self._file.seek(0)
-        reader = SeekingReader(self._file, record_size_limit=self._size)
-        summary = reader.get_summary()
-        if summary is None:
-            raise ValueError("it has no index")
-        return reader, summary
-
-    def _indexed_frames(self) -> tuple[int, float]:
-        """Return how many camera frames a whole session has, and their duration [s]."""
-        try:
-            reader, summary = self._index()
-            if summary.statistics is None:
-                raise ValueError("it has no index")
-            ids = {channel.topic: number for number, channel in summary.channels.items()}
-            counts = summary.statistics.channel_message_counts
-            frames = counts.get(ids.get(IMAGE_TOPIC, -1), 0)
-            return frames, _end(reader, last=True) - _end(reader, last=False) if frames else 0.0
-        except READ_ERRORS as error:
-            raise AppError(f"cannot read the session '{self.path}': {error}") from error
-
-    def _readable_frames(self) -> tuple[int, float]:
-        """Return the same of what can be read; refuse it if it is not to be salvaged."""
-        times = [time for _, time, _ in self.messages(IMAGE_TOPIC)]
-        frames, seconds = len(times), times[-1] - times[0] if times else 0.0
-        if self._salvage:
-            return frames, seconds
-        if not frames:
-            raise AppError(
-                f"the session '{self.path}' was cut off before its first frame was whole"
-            )
-        raise AppError(
-            f"the session '{self.path}' was cut off: {quantity(frames, 'frame')} ({seconds:.1f} s) "
-            "can be played with --salvage"
-        )
-
 
 def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
     """Return what a session says of itself; see `SessionFile` and `SessionFile.info`."""
@@ -436,11 +269,3 @@ def messages(path: Path, *topics: str) -> Iterator[Message]:
     """Yield the messages of a session; see `SessionFile.messages`."""
     with SessionFile(path) as session:
         yield from session.messages(*topics)
-
-
-def _end(reader: SeekingReader, *, last: bool) -> float:
-    """Return the timestamp of the first or last camera frame [s], from one chunk or few."""
-    found = next(reader.iter_messages(IMAGE_TOPIC, reverse=last), None)
-    if found is None:
-        raise ValueError("its index leads to no frame")
-    return found[2].log_time / 1e9

@@ -99,7 +99,7 @@ def film_clip(body: Character, plan: GesturePlan, rate: float) -> Clip:
 def captured_clip(body: Character, library: GestureLibrary, clip: Clip, speech: Speech,
                   rate: float) -> Clip:  # fmt: skip
     """Return captured gestures as the others are shown: the same joints, and legs that stand."""
-    standing, joints = _standing(body), list(library.joints)
+    standing, joints = standing_pose(body), list(library.joints)
     count = round((LEAD_S + speech.duration + TAIL_S) * rate) + 1
     poses = []
     for number in range(count):
