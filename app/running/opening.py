@@ -307,7 +307,11 @@ def open_sound(
         Mixer(bank, options.volume),
         live=options.windowed,
         muted=options.muted,
-        moods=not is_real_robot(options.robot),  # such a robot has a voice of its own
+        # A real robot has a voice of its own; the second player may have none.
+        moods=(
+            not is_real_robot(options.robot),
+            options.second_robot != "none" and not is_real_robot(options.second_robot),
+        ),
         loudspeaker=loudspeaker,
     )
     closing.callback(sound.close)

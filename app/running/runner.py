@@ -66,7 +66,9 @@ def run(
         summary.interrupted = True
     finally:
         runner.close()
-    summary.robot_log = session.robot.log()
+    for robot in (session.robot, session.second_robot):
+        if robot.name in summary.robots:
+            summary.robots[robot.name].log = robot.log()
     summary.lens = lens_notice(
         session.playground.tracked.lens, session.playground.tracked.measured_intrinsics
     )

@@ -63,6 +63,46 @@ class EvenSamples(Generic[T]):
 
 
 @dataclass
+class RobotFigures:
+    """What a robot felt in a session, and said."""
+
+    labels: list[tuple[float, str]] = field(default_factory=list)
+    """When the label of its mood changed, by what was played until then [s], and the new label."""
+
+    valences: EvenSamples[float] = field(default_factory=EvenSamples)
+    """The valence that it reports, −1…1."""
+
+    log: tuple[LogLine, ...] = ()
+    """The last lines of its log."""
+
+    def add(self, view: RobotView, now: float) -> None:
+        """Add what it reports at a time [s]."""
+        if not self.labels or self.labels[-1][1] != view.label:
+            self.labels.append((now, view.label))
+        self.valences.add(view.mood)
+
+    def fill(self, table: Table, name: str, duration: float) -> None:
+        """Add its rows to the table of the summary, after a duration [s]."""
+        table.add_row(f"{name} felt", literal_text(_timeline(self.labels, duration)))
+        table.add_row(
+            "", Text(self._curve(), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")
+        )
+        serious = [line for line in self.log if line.severity != "information"]
+        for line in serious[-MAX_LOG_LINES:]:
+            table.add_row(f"{name} said", literal_text(f"{line.severity}: {line.text}"))
+
+    def _curve(self) -> str:
+        """Return the valence over time as a line of blocks."""
+        valences = self.valences.values
+        if not valences:
+            return ""
+        last = len(valences) - 1
+        picks = (valences[round(i * last / (CURVE_WIDTH - 1))] for i in range(CURVE_WIDTH))
+        heights = (int((min(1.0, max(-1.0, valence)) + 1) * 3.999) for valence in picks)
+        return "".join(CURVE_BLOCKS[min(7, height)] for height in heights)
+
+
+@dataclass
 class Summary:
     """Collects the figures of a session, frame by frame."""
 
@@ -90,11 +130,8 @@ class Summary:
     states: list[tuple[float, str]] = field(default_factory=list)
     """When each state of the character began, in the same way, and its name."""
 
-    labels: list[tuple[float, str]] = field(default_factory=list)
-    """When the label of the robot's mood changed, in the same way, and the new label."""
-
-    valences: EvenSamples[float] = field(default_factory=EvenSamples)
-    """The valence that the robot reports, −1…1."""
+    robots: dict[str, RobotFigures] = field(default_factory=dict)
+    """The robots by their names, that of the first player first."""
 
     frame_seconds: EvenSamples[float] = field(default_factory=EvenSamples)
     """Processing times of the frames that were shown, from decoding to the glass [s]."""
@@ -104,9 +141,6 @@ class Summary:
 
     gaps: list[Gap] = field(default_factory=list)
     """When the camera or the robot was missing, in the order of their ends."""
-
-    robot_log: tuple[LogLine, ...] = ()
-    """The last lines of the robot's log."""
 
     camera: Health | None = None
     """State of the camera at the end; None for a source that is not live."""
@@ -131,7 +165,7 @@ class Summary:
     ) -> None:
         """Add one frame and its processing time [s]; `follows` is false after a jump.
 
-        The time is None for a frame that was not drawn.
+        `robot` is what the robots report. The time is None for a frame that was not drawn.
         """
         self.left_out += seconds is None
         self.hopped = self.hopped or step.outcome.icon == "hop"
@@ -146,9 +180,8 @@ class Summary:
             self.scenarios.append((now, step.scenario))
         if not self.states or self.states[-1][1] != step.posed.state:
             self.states.append((now, step.posed.state))
-        if not self.labels or self.labels[-1][1] != robot.label:
-            self.labels.append((now, robot.label))
-        self.valences.add(robot.mood)
+        for view in filter(None, (robot, robot.second)):
+            self.robots.setdefault(view.name, RobotFigures()).add(view, now)
         if seconds is not None:
             self.frame_seconds.add(seconds)
 
@@ -189,13 +222,8 @@ class Summary:
         if self.hopped:
             make = "[cyan]cubeling character locomotion[/] gives it a gait"
             table.add_row("", f"it hopped, as it has no clips to walk with: {make}")
-        table.add_row("robot felt", literal_text(_timeline(self.labels, duration)))
-        table.add_row(
-            "", Text(self._curve(), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")
-        )
-        serious = [line for line in self.robot_log if line.severity != "information"]
-        for line in serious[-MAX_LOG_LINES:]:
-            table.add_row("robot said", literal_text(f"{line.severity}: {line.text}"))
+        for name, figures in self.robots.items():
+            figures.fill(table, name if len(self.robots) > 1 else "robot", duration)
         table.add_row(
             "a frame took", f"{median:.1f} ms in the median, {slow:.1f} ms at the 95th percentile"
         )
@@ -209,16 +237,6 @@ class Summary:
         names = dict.fromkeys([self.scenario, *(name for _, name in self.scenarios)])
         title = f"[bold]{', '.join(names)}"
         return Panel(Group(table), title=title, title_align="left", expand=False)
-
-    def _curve(self) -> str:
-        """Return the valence over time as a line of blocks."""
-        valences = self.valences.values
-        if not valences:
-            return ""
-        last = len(valences) - 1
-        picks = (valences[round(i * last / (CURVE_WIDTH - 1))] for i in range(CURVE_WIDTH))
-        heights = (int((min(1.0, max(-1.0, valence)) + 1) * 3.999) for valence in picks)
-        return "".join(CURVE_BLOCKS[min(7, height)] for height in heights)
 
 
 def camera_line(health: Health) -> str:

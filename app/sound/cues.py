@@ -2,12 +2,13 @@
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cubeling.affect import closest_word
-from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.step import Performance, Step
 from cubeling.app.sound.sounds import MOOD_SOUNDS
 from cubeling.characters import Character, Footfalls, PosedCharacter
 
@@ -16,6 +17,9 @@ EDGE_RAD = math.radians(30.0)
 
 MIN_MOOD_S = 1.0
 """Shortest time between two sounds of the robot [s]."""
+
+ROBOT_RATES = (1.0, 0.8)
+"""How fast the sounds of the players' robots are played: the second one is heard to be another."""
 
 MOUTHS = {"kiss": ("ou", 1.05, 0.4), "shout": ("aa", 0.5, 0.3)}
 """For actions that sound each time the mouth moves: the morph, the weight from which on it sounds,
@@ -62,13 +66,14 @@ class SoundCues:
     character
         The character of the steps.
     moods
-        Whether the robot's moods are heard.
+        Whether the moods of each player's robot are heard.
     """
 
-    def __init__(self, character: Character, *, moods: bool = True) -> None:
+    def __init__(self, character: Character, *, moods: Sequence[bool] = (True,)) -> None:
         self._feet = _FootCues(character)
         self._actions = _ActionCues(character)
-        self._moods = _MoodCues() if moods else None
+        rates = zip(moods, ROBOT_RATES, strict=False)
+        self._moods = [_MoodCues(rate) if heard else None for heard, rate in rates]
         self._points = 0
         self._counts: Counter[str] = Counter()
 
@@ -84,8 +89,8 @@ class SoundCues:
         if points > self._points:
             cues.append(Cue("pencil"))
         self._points = points
-        if self._moods is not None:
-            cues += self._moods.update(step)
+        for moods, each in zip(self._moods, step.cast, strict=False):
+            cues += [] if moods is None else moods.update(each)
         if step.posed.visible:
             pan = pan_of(step.posed, step)
             actions = self._actions.update(step.posed)
@@ -156,22 +161,23 @@ class _ActionCues:
 
 
 class _MoodCues:
-    """The robot's voice: heard when its mood has another word."""
+    """A robot's voice: heard when its mood has another word."""
 
-    def __init__(self) -> None:
+    def __init__(self, rate: float) -> None:
+        self._rate = rate
         self._label: str | None = None
         self._last = -math.inf
 
-    def update(self, step: Step) -> list[Cue]:
-        emotion, now = step.emotion.emotion, step.emotion.timestamp
-        if self._label is not None and step.command.speaks:
+    def update(self, performance: Performance) -> list[Cue]:
+        emotion, now = performance.emotion.emotion, performance.emotion.timestamp
+        if self._label is not None and performance.command.speaks:
             return []  # the robot listens, and answers afterwards
         if self._label is None:
             self._label = emotion.label
         if emotion.label == self._label or now - self._last < MIN_MOOD_S:
             return []
         self._label, self._last = emotion.label, now
-        return [Cue(closest_word(MOOD_SOUNDS, emotion) or "neutral")]
+        return [Cue(closest_word(MOOD_SOUNDS, emotion) or "neutral", rate=self._rate)]
 
 
 def pan_of(posed: PosedCharacter, step: Step) -> float:

@@ -1,6 +1,6 @@
 """What is heard of a session, on a loudspeaker or in a video."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -45,7 +45,7 @@ class SessionSound:
     muted
         Whether nothing sounds at first.
     moods
-        Whether the robot's moods are heard.
+        Whether the moods of each player's robot are heard.
     loudspeaker
         Opens what a live session is heard on; None for the loudspeaker of this computer.
     """
@@ -56,7 +56,7 @@ class SessionSound:
         *,
         live: bool = False,
         muted: bool = False,
-        moods: bool = True,
+        moods: Sequence[bool] = (True,),
         loudspeaker: Callable[[Mixer], SoundOutput] | None = None,
     ) -> None:
         self.mixer = mixer

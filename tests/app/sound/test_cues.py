@@ -7,7 +7,7 @@ import pytest
 
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
-from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.step import Performance, Step
 from cubeling.app.sound import SoundCues
 from cubeling.characters import Animator, Character, RootDelta
 from cubeling.characters.rendering import FloorPath
@@ -114,10 +114,21 @@ def test_the_robots_mood_is_heard_when_its_word_changes_and_not_too_often(vleo, 
         emotion = EmotionTarget(Emotion(0.2, 0.1, word), frame * FRAME)
         heard += [(frame, cue.name) for cue in cues.update(steps(posed, emotion=emotion))]
     assert heard == [(30, "neutral"), (60, "angry"), (120, "happy")]
-    silent = SoundCues(vleo, moods=False)
+    silent = SoundCues(vleo, moods=(False,))
     for word in ("neutral", "happy"):
         emotion = EmotionTarget(Emotion(0.2, 0.1, word), 0.0)
         assert not silent.update(steps(posed, emotion=emotion))
+
+
+def test_the_second_robot_is_heard_beside_the_first_and_lower(vleo, steps):
+    posed = Animator(vleo).update(command(0.0))
+    cues, heard = SoundCues(vleo, moods=(True, True)), []
+    for frame, word in enumerate(["happy"] * 40 + ["angry"] * 40):
+        step = steps(posed, emotion=EmotionTarget(Emotion(0.2, 0.1, "happy"), frame * FRAME))
+        felt = EmotionTarget(Emotion(0.2, 0.1, word), frame * FRAME)
+        other = Performance("ann", dataclasses.replace(step.outcome, emotion=felt), posed)
+        heard += cues.update(dataclasses.replace(step, others=(other,)))
+    assert [(cue.name, cue.rate < 1.0) for cue in heard] == [("angry", True)]
 
 
 def test_the_cube_a_path_and_a_new_start_are_heard(vleo, steps):

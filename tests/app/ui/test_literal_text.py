@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from cubeling.app import cli
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary import RobotFigures, Summary
 from cubeling.app.ui import roster
 from cubeling.robot import LogLine
 from cubeling.robot.network import Member
@@ -23,7 +23,8 @@ def printed(content: object) -> str:
 
 
 def test_the_moods_of_a_robot_in_the_summary():
-    summary = Summary("companion", frames=2, duration=4.0, labels=[(0.0, WILD)])
+    robots = {"robot": RobotFigures([(0.0, WILD)])}
+    summary = Summary("companion", frames=2, duration=4.0, robots=robots)
     assert f"{SHOWN} 4.0 s" in printed(summary)
 
 
@@ -33,7 +34,8 @@ def test_what_a_robot_logged_in_the_summary():
         LogLine(2, "warning", WILD, 1.0),
         LogLine(3, "error", "neck: 90 °C", 2.0),
     )
-    text = printed(Summary("companion", frames=2, robot_log=log))
+    robots = {"robot": RobotFigures(log=log)}
+    text = printed(Summary("companion", frames=2, robots=robots))
     assert f"warning: {SHOWN}" in text
     assert "error: neck: 90 °C" in text
     assert "started" not in text

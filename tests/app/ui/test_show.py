@@ -1,5 +1,6 @@
 """Cards over the picture, videos on disk, and the summary."""
 
+import dataclasses
 from dataclasses import replace
 from pathlib import Path
 
@@ -178,10 +179,20 @@ def test_the_summary_shows_frames_moods_and_processing_time(a_step):
     step = a_step(None)
     for _ in range(4):
         summary.add(step, ROBOT, 0.02)
-    assert summary.labels == [(0.0, "happy")]
+    assert summary.robots["robot"].labels == [(0.0, "happy")]
     shown = printed(summary)
     assert "4 frames" in shown
     assert "20.0 ms in the median, 20.0 ms at the 95th percentile" in shown
+
+
+def test_the_summary_has_the_moods_of_both_robots_by_their_names(a_step):
+    summary = Summary("companion")
+    ann = dataclasses.replace(ROBOT, name="ann", label="angry")
+    summary.add(a_step(None), dataclasses.replace(ROBOT, name="tim", second=ann), 0.02)
+    shown = printed(summary)
+    assert "tim felt" in shown
+    assert "ann felt" in shown
+    assert "robot felt" not in shown
 
 
 def test_the_summary_names_every_scenario_that_was_played(a_step):
