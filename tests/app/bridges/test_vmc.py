@@ -1,6 +1,8 @@
 """The character on other programs' models: sent by VMC, received by the published conventions."""
 
+import asyncio
 import socket
+import subprocess
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,8 +15,9 @@ from cubeling.characters import Character, CharacterError, PosedCharacter
 from cubeling.characters.model import PRESETS, TPoseBones, retarget
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
-from cubeling.characters.skeleton.pose import Pose, Skeleton
 from tests.app.bridges.vmc_receiver import VmcReceiver
+from tests.bench.vmc import __main__ as stranger
+from tests.bench.vmc.models import normalised_model, raw_model
 
 UNITY_BONES = frozenset(
     [
@@ -45,35 +48,6 @@ def human():
 def posed(character, pose, place=None):
     table = np.eye(4) if place is None else place
     return PosedCharacter(pose, table, True, "wave", 0.0, 0.0, 0.0, 0.0)
-
-
-def normalised_model(human, arms=1.0, legs=1.0):
-    """Return a model as VRM 0 has it: in a T-pose, no bone turned, of other proportions."""
-    bones = TPoseBones(human)
-    offsets = bones.offsets.copy()
-    for bone, part in enumerate(bones.parts):
-        if part.endswith(("LowerArm", "Hand")):
-            offsets[bone] *= arms
-        if part.endswith(("LowerLeg", "Foot")) or part == "hips":
-            offsets[bone] *= legs
-    rest = Pose(offsets, np.tile(rotations.IDENTITY, (len(offsets), 1)))
-    return Skeleton(bones.parts, bones.parents, rest)
-
-
-def raw_model(human, arms, legs):
-    """Return the same as VRM 1.0 may have it: each bone has axes of its own."""
-    plain = normalised_model(human, arms, legs)
-    random = np.random.default_rng(1)
-    world = random.normal(size=(len(plain), 4))
-    world /= np.linalg.norm(world, axis=-1, keepdims=True)
-    places = plain.rest.globals(plain)[:, :3, 3]
-    turns, offsets = world.copy(), places.copy()
-    for joint, parent in enumerate(plain.parents):
-        if parent >= 0:
-            above = rotations.conjugate(world[parent])
-            turns[joint] = rotations.multiply(above, world[joint])
-            offsets[joint] = rotations.rotate(above, places[joint] - places[parent])
-    return Skeleton(plain.names, plain.parents, Pose(offsets, turns))
 
 
 MODELS = {
@@ -210,3 +184,16 @@ def test_each_preset_of_a_face_that_has_it_is_read_alone(morphs):
     for number in range(len(morphs)):
         shown = face.read(np.eye(len(morphs))[number])
         assert sorted(shown.values())[-2:] == pytest.approx([0.0, 1.0], abs=0.02), morphs[number]
+
+
+@pytest.mark.full
+@pytest.mark.skipif(bool(stranger.missing()), reason=f"there is no {stranger.missing()}")
+@pytest.mark.slow(reason="starts a browser; the first time, npm installs three-vrm")
+def test_a_strangers_receiver_in_a_browser_puts_the_wrists_there_too():
+    """three-vrm with node-osc, on models of VRM 0 and 1.0."""
+    try:
+        stranger.install()
+    except subprocess.CalledProcessError:
+        pytest.skip("npm cannot install three-vrm here")
+    results = asyncio.run(stranger.measure())
+    assert max(value for by_clip in results.values() for value in by_clip.values()) < 0.02

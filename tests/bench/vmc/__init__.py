@@ -1,0 +1,1 @@
+"""The character on other programs' models, by the VMC protocol."""
