@@ -42,7 +42,7 @@ class UdpAddress:
         elif port is not None and not (colon and number.isdecimal()):
             host, number = text, str(port)
         host = host.removeprefix("[").removesuffix("]")
-        if not host or not number.isdecimal() or not 0 <= int(number) <= 65535:
+        if not host or "://" in text or not number.isdecimal() or not 0 <= int(number) <= 65535:
             raise AppError(f"{option} {text}: give a port, or HOST:PORT as in {LOOPBACK}:9000")
         return cls(host, int(number))
 

@@ -10,6 +10,7 @@ from cubeling.affect import WORD_PLACES, Emotion
 from cubeling.app.bridges.addresses import UdpAddress
 from cubeling.app.bridges.channels import samples_of
 from cubeling.app.bridges.osc_socket import OscMessage, OscReceiver, OscSender, Value
+from cubeling.app.counted import quantity
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Step
 from cubeling.app.pipeline.table.acts import Act
@@ -93,8 +94,8 @@ class OscIn(Instrument):
         """What was not taken, by the reason."""
         return {
             "came faster than frames": self._receiver.dropped + self.dropped,
-            "are no OSC": self._receiver.malformed,
-            "ask for nothing that there is": self.unknown,
+            "could not be read": self._receiver.malformed,
+            "asked for nothing that there is": self.unknown,
         }
 
     def follow(self, step: Step, cast: Sequence[Character], taken: float) -> Inputs:
@@ -111,14 +112,15 @@ class OscIn(Instrument):
         for reason, count in self.counts.items():
             if count and reason not in self._told:
                 self._told.add(reason)
-                self._on_problem(f"OSC: messages that {reason} are dropped")
+                self._on_problem(f"OSC drops messages that {reason}")
         return inputs
 
     def close(self) -> None:
         """Close the socket, and say how much was not taken; a second call does nothing."""
         self._receiver.close()
         for reason in sorted(self._told):
-            self._on_problem(f"OSC: {self.counts[reason]} messages that {reason} were dropped")
+            count = quantity(self.counts[reason], "message")
+            self._on_problem(f"OSC dropped {count} that {reason}")
         self._told.clear()
 
 

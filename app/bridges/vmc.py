@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from cubeling.app.bridges.addresses import UdpAddress
 from cubeling.app.bridges.osc_socket import OscMessage, OscSender, Value
+from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.instrument import Instrument
@@ -41,7 +42,7 @@ UNITY_THUMBS = {"Metacarpal": "Proximal", "Proximal": "Intermediate", "Distal": 
 class VmcOut(Instrument):
     """Sends the first character of a session.
 
-    Raises CharacterError at the beginning if that is no person.
+    Raises AppError at the beginning if that is no person.
     """
 
     def __init__(self, address: UdpAddress) -> None:
@@ -51,15 +52,18 @@ class VmcOut(Instrument):
         self._first: float | None = None
 
     def begin(self, cast: Sequence[Character]) -> None:
-        """Measure the character's bones."""
-        self._character, self._body = cast[0], VmcBody(cast[0])
+        """Measure the character's bones; raises AppError if it is no person."""
+        try:
+            self._character, self._body = cast[0], VmcBody(cast[0])
+        except CharacterError as error:
+            raise AppError(f"--vmc: {error}; choose one with --character") from None
 
     def follow(self, step: Step, cast: Sequence[Character], taken: float) -> Inputs:
         """Send the character's bones and face; a character that is no person stands still."""
         if cast[0] is not self._character:  # the player has chosen another one
             try:
                 self.begin(cast)
-            except CharacterError:
+            except AppError:
                 self._character, self._body = cast[0], None
         if self._body is not None:
             now = step.posed.timestamp

@@ -11,7 +11,8 @@ import pytest
 
 from cubeling.app.bridges.addresses import UdpAddress
 from cubeling.app.bridges.vmc import VRM0_NAMES, VmcBody, VmcOut, unity_name
-from cubeling.characters import Character, CharacterError, PosedCharacter
+from cubeling.app.errors import AppError
+from cubeling.characters import Character, PosedCharacter
 from cubeling.characters.model import PRESETS, TPoseBones, retarget
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.anatomy import Anatomy
@@ -157,7 +158,7 @@ def test_the_root_is_where_the_character_stands_in_its_own_metres(human):
 def test_what_is_no_person_is_refused_in_one_line():
     with (
         VmcOut(UdpAddress("127.0.0.1", 9)) as out,
-        pytest.raises(CharacterError, match="vleo is no person"),
+        pytest.raises(AppError, match="--vmc: vleo is no person"),
     ):
         out.begin([Character.load("vleo")])
 
