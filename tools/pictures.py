@@ -47,9 +47,12 @@ from cubeling.app.workshop.pages.page import STYLE
 from cubeling.app.workshop.study.bundled.single_facial_actions import INTENSITY
 from cubeling.app.workshop.study.face_stimuli import RECIPES as ACTIONS, draw_faces
 from cubeling.app.workshop.study.participants.running import run_simulated
+from cubeling.app.workshop.study.participants.stimulus_files import pictures_of
 from cubeling.app.workshop.study.participants.study_log import StudyFolder
 from cubeling.app.workshop.study.protocols.protocol_file import protocol_text, read_protocol
+from cubeling.app.workshop.study.protocols.questionnaires import FACES, Item
 from cubeling.app.workshop.study.reporting.tables import gather
+from cubeling.app.workshop.study.window.sheet import Sheet
 from cubeling.characters import Character
 from cubeling.characters.model.motion_library import library_of
 from cubeling.characters.rendering import create_context
@@ -276,6 +279,33 @@ def draw_study() -> None:
     (FOLDER / "study-times.svg").write_text(f"{head}{drawn}</svg>\n", "utf-8")
 
 
+def draw_sheets_of_study() -> None:
+    """Draw what a participant sees in the window."""
+    scale = Item("easy", "The cube was easy to use.", anchors=("totally disagree", "totally agree"))
+    liked = Item("liked", "How did you like it?", pictures=(FACES,))
+    words = Item("rigid", "", anchors=("moving rigidly", "moving elegantly"))
+    better = Item(
+        "better",
+        "Which one suits the speech better?",
+        anchors=("left, much", "left", "same", "right", "right, much"),
+    )
+    shown = [
+        np.asarray(cv2.imread(str(FOLDER / f"companion-{name}.jpg"))) for name in ("kiss", "shout")
+    ]
+    sheets = [
+        Sheet("Experience", item=scale),
+        Sheet("Experience", item=liked, pictures=pictures_of(liked, FOLDER)),
+        Sheet("Your impression of the robot", item=words),
+        Sheet("Pairs", item=better, captions=("left", "right")),
+    ]
+    for sheet, count in zip(sheets, (4, 5, 3, 2), strict=True):
+        for _ in range(count):
+            sheet.press("→")
+    drawn = [sheet.draw(0.5, shown if sheet is sheets[-1] else ()) for sheet in sheets]
+    picture = np.vstack([np.hstack(drawn[:2]), np.hstack(drawn[2:])])
+    cv2.imwrite(str(FOLDER / "study-window.jpg"), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
+
+
 FACE_ROWS = (("high", "with"), ("high", "without"), ("low", "with"))
 """Intensity and wrinkles of each row of faces."""
 
@@ -405,6 +435,7 @@ if __name__ == "__main__":
     draw_moods()
     draw_study()
     draw_faces_of_study()
+    draw_sheets_of_study()
     draw_transition()
     draw_gestures()
     draw_gesture_editor()

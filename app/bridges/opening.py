@@ -15,6 +15,7 @@ from cubeling.app.errors import AppError
 if TYPE_CHECKING:
     from cubeling.app.running.instrument import Instrument
     from cubeling.app.running.wizard.plan import WizardPlan
+    from cubeling.app.ui.local_pages import LocalPages
 
 LSL_SCOPES = ("machine", "link", "site")
 """Who finds our streams and whose streams we find, in LSL's words: this computer, its network, its
@@ -80,12 +81,16 @@ class InstrumentOptions:
 
 @contextmanager
 def open_instruments(
-    options: InstrumentOptions, say: Callable[[str], None], plan: WizardPlan | None = None
+    options: InstrumentOptions,
+    say: Callable[[str], None],
+    plan: WizardPlan | None = None,
+    pages: LocalPages | None = None,
 ) -> Iterator[tuple[Instrument, ...]]:
     """Open the instruments that are asked for, and close them at the end.
 
-    `plan` has the buttons of a wizard's desk, unless the options name a file. `say` is called with
-    lines about them. Raises AppError if a library is missing, or an address cannot be used.
+    `plan` has the buttons of a wizard's desk, unless the options name a file; `pages` serve it,
+    else a server of its own. `say` is called with lines about them. Raises AppError if a library
+    is missing, or an address cannot be used.
     """
     with ExitStack() as closing:
         opened: list[Instrument] = []
@@ -122,7 +127,7 @@ def open_instruments(
 
             if options.wizard_file is not None:
                 plan = read_wizard_plan(options.wizard_file)
-            desk = WizardDesk(closing.enter_context(LocalPages()), plan)
+            desk = WizardDesk(pages or closing.enter_context(LocalPages()), plan)
             say(f"The wizard's desk: {desk.address}")
             opened.append(desk)
         yield tuple(opened)

@@ -115,7 +115,9 @@ class LocalPages(Closeable):
                     self._send(None)
                 elif not length.isdecimal() or int(length) > MAX_SENT_BYTES:
                     self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
-                elif reply := page.post(self.rfile.read(int(length))):
+                elif len(data := self.rfile.read(int(length))) < int(length):
+                    self.close_connection = True  # a browser that was closed while it answered
+                elif reply := page.post(data):
                     self._send(reply)
                 else:
                     self.send_response(HTTPStatus.SEE_OTHER)

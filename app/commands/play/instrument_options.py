@@ -29,6 +29,7 @@ from cubeling.robot.network import DEFAULT_SITE
 if TYPE_CHECKING:
     from cubeling.app.running.instrument import Instrument
     from cubeling.app.running.wizard.plan import WizardPlan
+    from cubeling.app.ui.local_pages import LocalPages
 
 INSTRUMENT_GROUP = "Other programs and instruments (see docs/instruments.md)"
 """Heading of these options in a help."""
@@ -111,17 +112,19 @@ class GivenInstruments:
     """The values of `NETWORK`."""
 
     @contextmanager
-    def open(self, plan: WizardPlan | None = None) -> Iterator[tuple[Instrument, ...]]:
+    def open(
+        self, plan: WizardPlan | None = None, pages: LocalPages | None = None
+    ) -> Iterator[tuple[Instrument, ...]]:
         """Open what is asked for, and close it at the end; the errors are one line each.
 
-        A plan has the buttons of a wizard's desk, which it opens.
+        A plan has the buttons of a wizard's desk, which it opens; `pages` serve it, or its own.
         """
         from cubeling.app.bridges.opening import open_instruments
 
         options = replace(self.options, wizard=self.options.wizard or plan is not None)
         with (
             publisher(*self.network.values()) as players,
-            open_instruments(options, say, plan) as others,
+            open_instruments(options, say, plan, pages) as others,
         ):
             yield (*players, *others)
 

@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 
 from cubeling.app.admission import Token
+from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.commands.play.play_options import (
     FILES_GROUP,
     CastOption,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
     import moderngl
 
+    from cubeling.app.running.instrument import Instrument
     from cubeling.app.session import SessionOptions
     from cubeling.app.ui.screen import Screen
     from cubeling.app.ui.web.server import WebServer
@@ -52,6 +54,7 @@ WAIT_S = 0.2
 """While no page sends pictures, Ctrl-C is heard this often [s]."""
 
 
+@with_instruments
 def serve(
     scenario: Annotated[
         str,
@@ -105,6 +108,8 @@ def serve(
             rich_help_panel=FILES_GROUP,
         ),
     ] = DEFAULT_FILE,
+    *,
+    instruments: GivenInstruments,
 ) -> None:
     """Play in a browser: scan the code with a phone, whose camera and screen are then yours.
 
@@ -147,11 +152,17 @@ def serve(
     from cubeling.app.scenarios.roles import check_cubes
 
     check_cubes(scenario, options.cubes)
-    _serve(options, secret, port, lan, preferences_file)
+    with instruments.open() as opened:
+        _serve(options, secret, port, lan, preferences_file, opened)
 
 
 def _serve(
-    options: "SessionOptions", token: Token, port: int, lan: bool, preferences_file: Path
+    options: "SessionOptions",
+    token: Token,
+    port: int,
+    lan: bool,
+    preferences_file: Path,
+    instruments: "tuple[Instrument, ...]",
 ) -> None:
     try:
         from cubeling.app.ui.web.opening import open_server, page_address
@@ -165,10 +176,15 @@ def _serve(
     ) as server:
         for line in page_address(server, token):
             console.print(line)
-        _play(options, server, preferences_file)
+        _play(options, server, preferences_file, instruments)
 
 
-def _play(options: "SessionOptions", server: "WebServer", preferences_file: Path) -> None:
+def _play(
+    options: "SessionOptions",
+    server: "WebServer",
+    preferences_file: Path,
+    instruments: "tuple[Instrument, ...]",
+) -> None:
     # Loaded while the phone is scanning.
     from dataclasses import replace
 
@@ -201,6 +217,7 @@ def _play(options: "SessionOptions", server: "WebServer", preferences_file: Path
                 f"playing {options.scenario}",
                 source=camera,
                 front_end=front_end,
+                instruments=instruments,
                 preferences=kept,
             )
     finally:

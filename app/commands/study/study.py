@@ -20,6 +20,7 @@ from cubeling.app.ui.display import has_display
 from cubeling.files import write_whole
 
 if TYPE_CHECKING:
+    from cubeling.app.ui.local_pages import LocalPages
     from cubeling.app.workshop.study.participants.live_task import TaskSetup
     from cubeling.app.workshop.study.participants.running import StudyDesk
     from cubeling.app.workshop.study.protocols.protocol import Protocol
@@ -131,9 +132,13 @@ def run(
     if simulated:
         run_simulated(study, simulated)
         _report(output, console)
+        pilot_run = ["cubeling", "study", "run", protocol, "-o", "pilot", "--pilot"]
+        words = shlex.join([*pilot_run, "--participant", "X1", "--page"])
+        console.print(Text.assemble("Next, try it yourself: ", (words, "cyan")))
         return
     from datetime import datetime
 
+    from cubeling.app.ui.local_pages import LocalPages
     from cubeling.app.workshop.study.participants.live_task import TaskSetup
 
     log = study.begin(participant, datetime.now())
@@ -143,9 +148,10 @@ def run(
     place = "page" if page else "window" if window else "terminal"
     try:
         with ExitStack() as closing:
-            opened = closing.enter_context(instruments.open(loaded.wizard))
+            pages = closing.enter_context(LocalPages())
+            opened = closing.enter_context(instruments.open(loaded.wizard, pages))
             setup = TaskSetup(source, robot, pictures, intrinsics, opened)
-            desk = _open_desk(place, loaded, setup, file, console, closing)
+            desk = _open_desk(place, loaded, setup, file, console, pages, closing)
             run_participant(loaded, log, desk)
             desk.thank()
     except KeyboardInterrupt:
@@ -159,6 +165,8 @@ def run(
         )
         raise
     console.print(Text(f"Thank you, {participant}. All answers are kept in {log.folder}"))
+    words = shlex.join(["cubeling", "study", "report", str(output)])
+    console.print(Text.assemble("Tables and report so far: ", (words, "cyan")))
 
 
 def _open_desk(
@@ -167,6 +175,7 @@ def _open_desk(
     setup: "TaskSetup",
     file: Path,
     console: Console,
+    pages: "LocalPages",
     closing: ExitStack,
 ) -> "StudyDesk":
     """Open what asks the participant: a terminal, a window or a page; the stack closes it."""
@@ -180,10 +189,9 @@ def _open_desk(
 
         return closing.enter_context(WindowDesk(protocol, setup, folder))
     if place == "page":
-        from cubeling.app.ui.local_pages import LocalPages
         from cubeling.app.workshop.study.participants.page_desk import PageDesk
 
-        desk = PageDesk(protocol, setup, folder, closing.enter_context(LocalPages()))
+        desk = PageDesk(protocol, setup, folder, pages)
         console.print(Text.assemble("The participant's page: ", (desk.address, "cyan")))
         return desk
     from cubeling.app.workshop.study.participants.terminal import TerminalDesk

@@ -8,7 +8,6 @@ import queue
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 from urllib.parse import parse_qs
 
@@ -32,7 +31,7 @@ from cubeling.app.workshop.study.participants.stimulus_files import (
     files_of,
     pictures_of,
 )
-from cubeling.app.workshop.study.participants.study_log import ParticipantLog
+from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
 from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
 from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, StudyTask
@@ -85,14 +84,12 @@ class PageDesk:
     ) -> None:
         self._protocol, self._setup, self._folder = protocol, setup, folder
         self._shown = ShownPage(-1, waiting_page("The study begins in a moment"))
+        self.now = SteadyClock()
+        """Returns the local time."""
         self._count = 0
         self._answers: queue.Queue[tuple[int, str]] = queue.Queue()
         self.address = pages.open(self)
         """Where the participant's browser finds the page."""
-
-    def now(self) -> datetime:
-        """Return the local time of this computer."""
-        return datetime.now()
 
     def tell(self, title: str, text: str) -> None:
         """Show a text until the participant goes on."""

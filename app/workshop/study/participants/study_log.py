@@ -8,6 +8,7 @@ leaves of a last line is left out, so that at most one answer is lost.
 import json
 import os
 import re
+import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -74,6 +75,20 @@ class Participant:
     def done(self) -> frozenset[str]:
         """Keys of the steps that they have finished."""
         return frozenset(str(each["key"]) for each in self.entries if "key" in each)
+
+
+class SteadyClock:
+    """The local time as it was at the beginning, and what has passed since.
+
+    A clock of the computer that is set in the meantime changes no duration.
+    """
+
+    def __init__(self) -> None:
+        self._began, self._at = datetime.now(), time.monotonic()
+
+    def __call__(self) -> datetime:
+        """Return the local time."""
+        return self._began + timedelta(seconds=time.monotonic() - self._at)
 
 
 def read_about(path: Path) -> dict[str, Any]:

@@ -1,7 +1,5 @@
 """A participant at a terminal: questions are asked and answered in it, tasks open a window."""
 
-from datetime import datetime
-
 from rich.console import Console
 from rich.panel import Panel
 from rich.text import Text
@@ -12,7 +10,7 @@ from cubeling.app.workshop.study.participants.live_task import (
     play_step,
 )
 from cubeling.app.workshop.study.participants.stimulus_files import names_of
-from cubeling.app.workshop.study.participants.study_log import ParticipantLog
+from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
 from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
 from cubeling.app.workshop.study.protocols.protocol import (
@@ -35,11 +33,9 @@ class TerminalDesk:
 
     def __init__(self, protocol: Protocol, setup: TaskSetup, console: Console) -> None:
         self._protocol, self._setup, self._console = protocol, setup, console
+        self.now = SteadyClock()
+        """Returns the local time."""
         self._about: tuple[str, int] | None = None
-
-    def now(self) -> datetime:
-        """Return the local time of this computer."""
-        return datetime.now()
 
     def tell(self, title: str, text: str) -> None:
         """Show a text until Enter is pressed."""

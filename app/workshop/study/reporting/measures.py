@@ -66,9 +66,10 @@ def wizard_parts(data: StudyData) -> Iterator[str]:
     if not rows:
         return
     yield heading("The wizard")
+    wrong = sum(row["undone"] for row in rows)
     yield paragraph(
-        f"{quantity(len(rows), 'act')}, of which {sum(row['undone'] for row in rows)} were taken "
-        "back as errors. Delays are from the cue to the act at the desk, without errors."
+        f"{quantity(len(rows), 'act')}; taken back as errors: {wrong}. Delays are "
+        "from the cue to the act at the desk, without errors."
     )
     lines = []
     for task, own in _by(rows, "task").items():

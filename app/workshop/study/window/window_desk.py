@@ -4,7 +4,7 @@ import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 
 from cubeling.app.errors import AppError
@@ -17,7 +17,7 @@ from cubeling.app.workshop.study.participants.stimulus_files import (
     pictures_of,
     read_picture,
 )
-from cubeling.app.workshop.study.participants.study_log import ParticipantLog
+from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
 from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
 from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, StudyTask
@@ -75,13 +75,13 @@ class QuestionWindow(WindowSurface):
         """Pixels of the window for a unit of the canvas."""
         return max(self.shown_size(*SIZE_PX)[1], 1) / SHEET_HEIGHT
 
-    def show_sheet(self, sheet: Sheet, shown: Sequence[Picture] = ()) -> datetime:
-        """Show a sheet, and return when it was there, by the local time."""
+    def show_sheet(self, sheet: Sheet, shown: Sequence[Picture] = ()) -> float:
+        """Show a sheet, and return when it was there, by `time.monotonic` [s]."""
         self.sheet = sheet
         self.paint(sheet.draw(self.scale, shown))
         with at_first_turn():  # else the log is late by what other programs take
             self.present_now()
-            return datetime.now()
+            return time.monotonic()
 
     def show_empty(self) -> None:
         """Show a sheet with nothing on it."""
@@ -142,7 +142,8 @@ class WindowDesk:
     ) -> None:
         self._protocol, self._setup, self._folder = protocol, setup, folder
         self._open, self._window = opened, opened()
-        self._played = False
+        self.now = SteadyClock()
+        """Returns the local time."""
         self.onset: datetime | None = None
         """When what the last question is about was on the screen; None for nothing."""
 
@@ -155,10 +156,6 @@ class WindowDesk:
     def close(self) -> None:
         """Close the window; a second call does nothing."""
         self._window.close()
-
-    def now(self) -> datetime:
-        """Return the local time of this computer."""
-        return datetime.now()
 
     def tell(self, title: str, text: str) -> None:
         """Show a text until the participant goes on."""
@@ -200,9 +197,9 @@ class WindowDesk:
         if files and self._protocol.light_patch:
             window.show_empty()
             time.sleep(DARK_S)
-        began = time.monotonic()
-        at = window.show_sheet(sheet, pictures)
-        self.onset = at if files else None
+        began = window.show_sheet(sheet, pictures)
+        since = time.monotonic() - began
+        self.onset = self.now() - timedelta(seconds=since) if files else None
         while not sheet.done:
             window.poll()
             if window.closed:

@@ -1,6 +1,7 @@
 """A study on a page: forms for each kind of question, stimuli, answers that come twice or never."""
 
 import re
+import socket
 import threading
 import urllib.error
 import urllib.parse
@@ -14,10 +15,15 @@ import pytest
 
 from cubeling.app.errors import AppError
 from cubeling.app.ui.local_pages import LocalPages
+from cubeling.app.workshop.study.participants import study_log
 from cubeling.app.workshop.study.participants.live_task import TaskSetup
 from cubeling.app.workshop.study.participants.page_desk import PageDesk
 from cubeling.app.workshop.study.participants.running import run_participant
-from cubeling.app.workshop.study.participants.study_log import StudyFolder, read_participant
+from cubeling.app.workshop.study.participants.study_log import (
+    SteadyClock,
+    StudyFolder,
+    read_participant,
+)
 from cubeling.app.workshop.study.protocols.protocol_file import read_protocol
 
 PROTOCOL = """
@@ -177,3 +183,61 @@ def test_a_stimulus_that_is_missing_ends_the_study_in_one_line(study, tmp_path):
     with led(study, tmp_path) as (browser, failed):
         browser.send("")
     assert str(failed[0]) == f"there is no stimulus 'shown/red' in '{tmp_path}'"
+
+
+def test_a_browser_that_closes_while_it_answers_answers_nothing(study, tmp_path, capfd):
+    with led(study, tmp_path) as (browser, _):
+        number = browser.send("")
+        host, _, path = browser.address.removeprefix("http://").partition("/")
+        question = re.findall(r'name="number" value="(\d+)"', browser.page())[0]
+        assert question != number
+        with socket.create_connection(tuple(host.split(":"))) as half:
+            head = f"POST /{path} HTTP/1.1\r\nHost: {host}\r\nContent-Length: 60\r\n\r\n"
+            half.sendall(f"{head}number={question}&answer=1".encode())
+        assert f'value="{question}"' in browser.page()  # it still waits, and goes on
+        for answer in ("0", "0.5", "2", ""):
+            browser.send(answer)
+    assert "Traceback" not in capfd.readouterr().err
+
+
+def test_a_clock_that_is_set_back_changes_no_duration(study, monkeypatch):
+    clock = SteadyClock()
+    before = clock()
+
+    class Earlier(datetime):
+        @classmethod
+        def now(cls, tz=None):
+            return datetime(1999, 1, 1)
+
+    monkeypatch.setattr(study_log, "datetime", Earlier)
+    assert 0.0 <= (clock() - before).total_seconds() < 60.0
+    # Who answered at a later time than now, by a clock that was wrong, goes on.
+    study.begin("P01", datetime(2030, 1, 1)).write({"key": "p/hello"}, datetime(2030, 1, 1))
+    log = study.begin("P01", datetime(2026, 1, 1))
+    assert "p/hello" not in {step.key for step in log.left}
+
+
+def test_children_see_pictures_at_the_points_of_a_scale(tmp_path):
+    path = tmp_path / "x.toml"
+    path.write_text(PICTURES)
+    study = StudyFolder(tmp_path / "s", read_protocol(path), path, "study")
+    with led(study, tmp_path) as (browser, _):
+        pictures = re.findall(r'<label><img src="[^"]*(/\d+/\d)"', browser.page())
+        decoded = [cv2.imdecode(np.frombuffer(browser.get(p), np.uint8), 1) for p in pictures]
+        assert len({each.tobytes() for each in decoded}) == 3
+        browser.send("2")
+
+
+PICTURES = """
+title = "Faces"
+[[phase]]
+name = "p"
+parts = ["liking"]
+[[questionnaire]]
+name = "liking"
+[[questionnaire.item]]
+name = "fun"
+text = "Was it fun?"
+high = 3
+pictures = ["faces"]
+"""

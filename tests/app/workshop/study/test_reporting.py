@@ -6,13 +6,15 @@ import math
 import re
 import sys
 from collections import defaultdict
+from dataclasses import asdict
+from datetime import datetime
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from cubeling.app.session import session_info
+from cubeling.app.session import WizardAct, session_info
 from cubeling.app.workshop.pages.box_plot import box_plot
 from cubeling.app.workshop.pages.page import page, table
 from cubeling.app.workshop.pages.report_table import ReportTable
@@ -22,13 +24,16 @@ from cubeling.app.workshop.study.bundled import (
     vleo_and_pleo,
     whose_idle_motion,
 )
-from cubeling.app.workshop.study.protocols.protocol_file import bundled_protocols
+from cubeling.app.workshop.study.participants.study_log import StudyFolder, participants_in
+from cubeling.app.workshop.study.protocols.protocol_file import bundled_protocols, load_protocol
+from cubeling.app.workshop.study.reporting.measures import wizard_parts
 from cubeling.app.workshop.study.reporting.statistics import (
     compare_paired,
     compare_several,
     compare_unpaired,
     describe,
 )
+from cubeling.app.workshop.study.reporting.tables import gather, write_tables
 from tests.examples import some
 
 RUNS = 1000
@@ -292,3 +297,34 @@ def test_bad_input_is_one_line(cubeling, arguments):
     code, _, err = cubeling("study", *arguments)
     assert code == 2
     assert len(err.splitlines()) == 1
+
+
+def test_the_report_counts_a_wizards_acts_and_errors_and_gives_the_delays(tmp_path):
+    protocol, file = load_protocol("vleo-and-pleo")
+    study = StudyFolder(tmp_path / "s", protocol, file, "study")
+    log = study.begin("P01", datetime(2026, 5, 4))
+    step = next(each for each in log.plan if each.kind == "task")
+    acts = [
+        WizardAct(1, 2.0, "say", "Hello!", "greets", 0.5),
+        WizardAct(2, 3.0, "action", "shout", "greets", 9.0, undone=True),
+        WizardAct(3, 3.5, "action", "kiss", "greets", 1.5),
+        WizardAct(4, 6.0, "gesture", "NOD", "", None),
+    ]
+    entry = {
+        "key": step.key,
+        "reached": True,
+        "time_s": 8.0,
+        "played_s": 8.0,
+        "recording": "x.mcap",
+    }
+    log.write({**entry, "acts": [asdict(each) for each in acts]}, datetime(2026, 5, 4))
+    data = gather(protocol, "study", participants_in(tmp_path / "s"))
+    assert [row["undone"] for row in data.tables["acts"]] == [False, True, False, False]
+    words = re.sub(r"<[^>]+>", " ", "".join(wizard_parts(data)))
+    assert "4 acts; taken back as errors: 1." in words
+    row = words[words.index(step.part) :].split()
+    assert row[row.index("everybody") + 1 :][:2] == ["4", "1"]
+    assert "2 1.00 0.71 1.50" in " ".join(row)  # the mean of 0.5 and 1.5, without the error
+    write_tables(data, tmp_path / "s")
+    with (tmp_path / "s" / "acts.csv").open(encoding="utf-8", newline="") as table_file:
+        assert [each["delay_s"] for each in csv.DictReader(table_file)] == ["0.5", "9.0", "1.5", ""]

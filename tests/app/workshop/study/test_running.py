@@ -271,6 +271,18 @@ def test_the_template_is_a_protocol_with_two_conditions_and_five_questions(tmp_p
     assert {step.condition for step in plan_of(protocol, 0)} == {"", "two turns", "one turn"}
 
 
+def test_a_protocol_names_the_buttons_of_a_wizards_desk(tmp_path):
+    path = tmp_path / "mine.toml"
+    wizard = '[wizard]\ncues = ["greets"]\nplace = [{ name = "l", x_cm = 1, z_cm = 2 }]'
+    path.write_text(f"{protocol_text(None)}\n{wizard}\n", encoding="utf-8")
+    plan = read_protocol(path).wizard
+    assert plan is not None
+    assert (plan.cues, plan.actions, plan.place[0].z_cm) == (("greets",), None, 2)
+    path.write_text(f'{protocol_text(None)}\n[wizard]\nemotions = ["glee"]\n', encoding="utf-8")
+    with pytest.raises(AppError, match="no emotion is called 'glee'"):
+        read_protocol(path)
+
+
 def test_a_changed_protocol_is_kept_beside_the_first_one(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(protocol_text(None), encoding="utf-8")
