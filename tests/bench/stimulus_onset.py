@@ -17,6 +17,7 @@ from tempfile import TemporaryDirectory
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 
 from cubeling.app.workshop.study.participants.live_task import TaskSetup
@@ -102,7 +103,7 @@ def watched_onsets(screen: VirtualScreen, program: "subprocess.Popen[bytes]") ->
     return found
 
 
-def measure(count: int) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+def measure(count: int) -> NDArray[np.float64]:
     """Return by how much the log is later than the screen, for each stimulus [s]."""
     with TemporaryDirectory() as name, VirtualScreen() as screen:
         program = subprocess.Popen(
@@ -114,7 +115,7 @@ def measure(count: int) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
     logged = [datetime.fromisoformat(each["onset_at"]).timestamp() for each in entries]
     if len(seen) != len(logged):
         raise SystemExit(f"{len(logged)} stimuli are in the log, and {len(seen)} were seen")
-    return np.array(logged) - np.array(seen)
+    return np.asarray(np.array(logged) - np.array(seen))
 
 
 def main() -> None:

@@ -1,6 +1,7 @@
 """The commands of `cubeling study`."""
 
 import shlex
+import sys
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -141,10 +142,6 @@ def run(
     from cubeling.app.ui.local_pages import LocalPages
     from cubeling.app.workshop.study.participants.live_task import TaskSetup
 
-    log = study.begin(participant, datetime.now())
-    done = len(log.plan) - len(log.left)
-    if done:
-        console.print(Text(f"{participant} goes on after {quantity(done, 'step')}.", "dim"))
     place = "page" if page else "window" if window else "terminal"
     try:
         with ExitStack() as closing:
@@ -152,17 +149,15 @@ def run(
             opened = closing.enter_context(instruments.open(loaded.wizard, pages))
             setup = TaskSetup(source, robot, pictures, intrinsics, opened)
             desk = _open_desk(place, loaded, setup, file, console, pages, closing)
+            log = study.begin(participant, datetime.now())  # once all is open: it counts as begun
+            done = len(log.plan) - len(log.left)
+            if done:
+                console.print(Text(f"{participant} goes on after {quantity(done, 'step')}.", "dim"))
             run_participant(loaded, log, desk)
             desk.thank()
     except KeyboardInterrupt:
-        asked = [f"--{place}"] if place != "terminal" else []
-        again = shlex.join(["cubeling", "study", "run", protocol, "-o", str(output), *asked])
-        console.print(
-            Text(
-                f"\nStopped; all answers are kept. Go on: {again} --participant "
-                f"{shlex.quote(participant)}"
-            )
-        )
+        again = shlex.join(["cubeling", *sys.argv[1:]])
+        console.print(Text(f"\nStopped; all answers are kept. Go on: {again}"))
         raise
     console.print(Text(f"Thank you, {participant}. All answers are kept in {log.folder}"))
     words = shlex.join(["cubeling", "study", "report", str(output)])

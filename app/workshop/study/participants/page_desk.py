@@ -8,6 +8,7 @@ import queue
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from urllib.parse import parse_qs
 
@@ -77,7 +78,7 @@ class PageDesk:
         Serves the page; whoever opened it closes it.
     """
 
-    onset = None
+    onset: datetime | None = None
 
     def __init__(
         self, protocol: Protocol, setup: TaskSetup, folder: Path, pages: LocalPages

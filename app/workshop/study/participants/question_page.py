@@ -7,8 +7,8 @@ from cubeling.app.workshop.study.protocols.questionnaires import Item, Questionn
 
 STYLE = """
 * { box-sizing: border-box; }
-body { font: 20px/1.5 system-ui, sans-serif; color: #1f2430; max-width: 56rem; margin: 3rem auto;
-  padding: 0 1.5rem; }
+body { font: 20px/1.5 system-ui, sans-serif; color: #1f2430; background: #fffaf0;
+  max-width: 56rem; margin: 3rem auto; padding: 0 1.5rem; }
 h1 { font-size: 1.1rem; color: #667085; font-weight: 600; }
 h2 { font-size: 1.5rem; line-height: 1.3; margin: 1rem 0 1.5rem; }
 p.text { white-space: pre-line; }
@@ -124,7 +124,8 @@ def _field(item: Item, pictures: Sequence[str]) -> str:
         )
     named = len(item.anchors) == len(item.answers) > 2
     words = item.anchors if named else tuple(f"{point:g}" for point in item.answers)
-    if not item.text:  # between two opposites, which stand beside the circles
+    # Two opposites stand beside the circles; pictures are for those who do not read.
+    if not item.text or (pictures and not named):
         words = ("",) * len(words)
     images = [f'<img src="{escape(place, quote=True)}" alt="">' for place in pictures]
     points = "".join(

@@ -41,7 +41,7 @@ AnswerModel = Callable[[np.random.Generator, PlannedStep, Item], Answer]
 class SimulatedDesk:
     """Answers and plays by itself; a `StudyDesk`."""
 
-    onset = None
+    onset: datetime | None = None
 
     def __init__(self, protocol: Protocol, number: int) -> None:
         self._now = BEGIN + timedelta(days=number)

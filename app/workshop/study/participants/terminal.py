@@ -1,5 +1,7 @@
 """A participant at a terminal: questions are asked and answered in it, tasks open a window."""
 
+from datetime import datetime
+
 from rich.console import Console
 from rich.panel import Panel
 from rich.text import Text
@@ -29,7 +31,7 @@ class TerminalDesk:
     Ctrl-D ends the study for now, as Ctrl-C does: what was answered is kept.
     """
 
-    onset = None
+    onset: datetime | None = None
 
     def __init__(self, protocol: Protocol, setup: TaskSetup, console: Console) -> None:
         self._protocol, self._setup, self._console = protocol, setup, console

@@ -83,16 +83,13 @@ def wizard_parts(data: StudyData) -> Iterator[str]:
             if late:
                 found = describe(late)
                 delays = [figure(found.mean), figure(found.deviation), figure(max(late))]
-            lines.append(
-                (
-                    *(task, _condition(condition), f"{len(acts)}", f"{errors}"),
-                    f"{percent(errors / len(acts), 0)} [{percent(low, 0)}, {percent(high, 0)}]",
-                    *(f"{len(late)}", *delays),
-                )
-            )
+            share = f"{errors} ({percent(errors / len(acts), 0)})"
+            bounds = f"[{percent(low, 0)}, {percent(high, 0)}]"
+            cells = (f"{len(acts)}", share, bounds, f"{len(late)}", *delays)
+            lines.append((task, _condition(condition), *cells))
     columns = (
-        *("task", "condition", "acts", "errors", "share of errors, 95 % interval"),
-        *("after a cue", "mean delay [s]", "SD", "longest"),
+        *("task", "condition", "acts", "errors", "95 % interval"),
+        *("cued", "mean delay [s]", "SD", "longest"),
     )
     note = "Acts of one wizard are not independent: the intervals are too narrow."
     yield table(ReportTable("Acts of the wizard", columns, tuple(lines), note))

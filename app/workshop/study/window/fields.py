@@ -88,10 +88,11 @@ class ScaleField(Field):
         self._step = FIELD_WIDTH * room / count
         self._left = (SHEET_WIDTH - FIELD_WIDTH * room + self._step) / 2
         values = [f"{each:g}" for each in item.answers]
-        numbers = ("",) * count if self._between else values
+        unnumbered = self._between or bool(pictures)
+        numbers = ("",) * count if unnumbered else values
         # Where no numbers are seen, digits count from the left.
         counted = [f"{number}" for number in range(1, count + 1)]
-        self._keys = counted if named or self._between else values
+        self._keys = counted if named or unnumbered else values
         self._words = [
             wrap_text(words, self._step - 10, WORDS_SIZE)
             for words in (item.anchors if named else numbers)

@@ -224,7 +224,7 @@ def test_children_see_pictures_at_the_points_of_a_scale(tmp_path):
     with led(study, tmp_path) as (browser, _):
         pictures = re.findall(r'<label><img src="[^"]*(/\d+/\d)"', browser.page())
         decoded = [cv2.imdecode(np.frombuffer(browser.get(p), np.uint8), 1) for p in pictures]
-        assert len({each.tobytes() for each in decoded}) == 3
+        assert len({np.asarray(each).tobytes() for each in decoded}) == 3
         browser.send("2")
 
 

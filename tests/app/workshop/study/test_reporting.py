@@ -323,7 +323,7 @@ def test_the_report_counts_a_wizards_acts_and_errors_and_gives_the_delays(tmp_pa
     words = re.sub(r"<[^>]+>", " ", "".join(wizard_parts(data)))
     assert "4 acts; taken back as errors: 1." in words
     row = words[words.index(step.part) :].split()
-    assert row[row.index("everybody") + 1 :][:2] == ["4", "1"]
+    assert row[row.index("everybody") + 1 :][:4] == ["4", "1", "(25", "%)"]
     assert "2 1.00 0.71 1.50" in " ".join(row)  # the mean of 0.5 and 1.5, without the error
     write_tables(data, tmp_path / "s")
     with (tmp_path / "s" / "acts.csv").open(encoding="utf-8", newline="") as table_file:

@@ -3,6 +3,7 @@
 import sys
 from datetime import datetime
 from pathlib import Path
+from typing import ClassVar
 
 import glfw
 
@@ -16,14 +17,14 @@ from cubeling.app.workshop.study.window.window_desk import QuestionWindow, Windo
 class Scripted(QuestionWindow):
     """A window in which each sheet is answered in the way that suits it; "stop" closes it."""
 
-    answers: tuple[str, ...] = ()
+    answers: ClassVar[list[str]] = []
 
     def poll(self) -> None:
         """Process events, and answer once."""
         super().poll()
         if self.sheet is None or self.sheet.done:
             return
-        answer, *Scripted.answers = Scripted.answers
+        answer = Scripted.answers.pop(0)
         if answer == "stop":
             self.quit()
             return
@@ -38,7 +39,7 @@ def main(protocol: str, *answers: str) -> None:
     """Lead a participant whose answers are keys, one argument for each sheet."""
     path = Path(protocol)
     study = StudyFolder(path.parent / "s", read_protocol(path), path, "study")
-    Scripted.answers = answers
+    Scripted.answers += answers
     with WindowDesk(study.protocol, TaskSetup(), path.parent, Scripted) as desk:
         run_participant(study.protocol, study.begin("P01", datetime.now()), desk)
         desk.thank()
