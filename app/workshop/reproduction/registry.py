@@ -10,7 +10,7 @@ from cubeling.app.workshop.pages.report_table import ReportTable
 from cubeling.app.workshop.reproduction.result import Reproduction, ReproductionRequest
 
 GRAPHS, IDLE, FACES = "Fernández-Baena 2015", "Egges 2006", "Huang 2013"
-"""The works."""
+"""The theses, by author and year."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,6 @@ class PrintedTable:
     """What it is called on the command line."""
 
     work: str
-    """Author and year."""
 
     printed_in: str
     """Where it is printed there."""

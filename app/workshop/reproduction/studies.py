@@ -296,26 +296,22 @@ def _draw_preference(sheet: "Figure") -> None:
 def _draw_actions(shown: ReportTable, sheet: "Figure") -> None:
     """Draw the identification at both levels of a factor: printed, and simulated."""
     axes = sheet.subplots()
-    identified = [
-        (
-            *row[0].removesuffix(": EXP").split(", "),
-            *(float(c.replace("–", "nan")) for c in row[1:]),
-        )
-        for row in shown.rows
-        if row[0].endswith(": EXP")
-    ]
+    identified: list[tuple[str, str, float, float]] = []
+    for name, *cells in shown.rows:
+        action, _, level = name.removesuffix(": EXP").partition(", ")
+        if name.endswith(": EXP"):
+            printed, own = (float(cell.replace("–", "nan")) for cell in cells)
+            identified.append((action, level, printed, own))
     actions = list(dict.fromkeys(action for action, *_ in identified))
     levels = list(dict.fromkeys(level for _, level, *_ in identified))
     for marker, level in zip("^v", levels, strict=True):
-        own = [row for row in identified if row[1] == level]
-        for column, shift, who, color in (
-            (2, -0.08, "printed", SECONDARY_COLOR),
-            (3, 0.08, "simulated", CURVE_STYLES[2][0]),
+        there = [row for row in identified if row[1] == level]
+        for values, shift, who, color in (
+            ([row[2] for row in there], -0.08, "printed", SECONDARY_COLOR),
+            ([row[3] for row in there], 0.08, "simulated", CURVE_STYLES[2][0]),
         ):
             places = [place + shift for place in range(len(actions))]
-            axes.plot(
-                places, [row[column] for row in own], marker, color=color, label=f"{who}, {level}"
-            )
+            axes.plot(places, values, marker, color=color, label=f"{who}, {level}")
     axes.set_xticks(range(len(actions)), actions)
     axes.set_ylabel("identification, 1…5")
     axes.set_ylim(1.0, 5.0)

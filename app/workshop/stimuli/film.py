@@ -32,7 +32,7 @@ class FilmLook:
     """Width and height [px]."""
 
     rate: float = 25.0
-    """Frames a second."""
+    """Frames a second of all films."""
 
 
 def write_film(

@@ -61,7 +61,7 @@ class PlannedFilm:
     """The gestures; None for captured ones, and for a film that is left out."""
 
     seed: int
-    """Of the plan."""
+    """The seed that led to the plan, or the first that was tried."""
 
     left_out: str = ""
     """Why there is no film; "" if there is one."""
@@ -96,8 +96,9 @@ def film_clip(body: Character, plan: GesturePlan, rate: float) -> Clip:
     return Clip("gestures", rate, stack(poses), loop=False)
 
 
-def captured_clip(body: Character, library: GestureLibrary, clip: Clip, speech: Speech,
-                  rate: float) -> Clip:  # fmt: skip
+def captured_clip(
+    body: Character, library: GestureLibrary, clip: Clip, speech: Speech, rate: float
+) -> Clip:
     """Return captured gestures as the others are shown: the same joints, and legs that stand."""
     standing, joints = standing_pose(body), list(library.joints)
     count = round((LEAD_S + speech.duration + TAIL_S) * rate) + 1

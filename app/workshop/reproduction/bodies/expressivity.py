@@ -73,11 +73,11 @@ def play(body: Character, how: GestureExpressivity, rate: float = RATE_HZ) -> Pl
     )
     gesture = next(each for each in GestureCollection.load_bundled() if each.name == GESTURE)
     end = (natural_times(gesture).end or 0.0) + SETTLE_S
-    names = ("leftHand", "rightHand", "chest")
-    left, right, chest = (body.anatomy.joint(name) for name in names)
+    hands = [body.anatomy.joint(name) for name in ("leftHand", "rightHand")]
+    chest = body.anatomy.joint("chest")
     poses = [player.update(number / rate).posed.pose for number in range(int(end * rate))]
     placed = np.stack([pose.globals(body.skeleton) for pose in poses])
-    wrists = placed[:, [left, right]][..., :3, 3] * PERSON_M / body.height
+    wrists = placed[:, np.array(hands)][..., :3, 3] * PERSON_M / body.height
     turned = placed[:, chest, :3, :3] @ placed[0, chest, :3, :3].T
     cosines = (np.trace(turned, axis1=1, axis2=2) - 1.0) / 2.0
     return PlayedGesture(tuple(poses), wrists, np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))))

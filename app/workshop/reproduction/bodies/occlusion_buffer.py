@@ -74,7 +74,7 @@ class GBuffer:
         return values[: self.size[1], : self.size[0], 0].copy()
 
     def release(self) -> None:
-        """Release the textures."""
+        """Release its textures on the graphics card."""
         for each in (self.normal_id, self.position, self.depths):
             each.release()
 

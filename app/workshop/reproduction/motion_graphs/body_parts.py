@@ -131,8 +131,15 @@ def _draw(curves: Curves, label: str, figure: "Figure") -> None:
     for number, (name, (thresholds, values)) in enumerate(curves.items()):
         color, dashes = CURVE_STYLES[number % len(CURVE_STYLES)]
         marker = "o" if number < len(CURVE_STYLES) else "s"
-        style = {"color": color, "linestyle": (0, dashes or None), "marker": marker}
-        axes.plot(thresholds, values, label=name, markersize=3.5, **style)
+        axes.plot(
+            thresholds,
+            values,
+            label=name,
+            markersize=3.5,
+            color=color,
+            linestyle=(0, dashes or None),
+            marker=marker,
+        )
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.set_xlabel("threshold")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.app.workshop.idle_plot import body_of
 from cubeling.app.workshop.moods.colors import CURVE_STYLES, SECONDARY_COLOR
@@ -58,7 +59,7 @@ class NeighbourCurves:
     """Mean of the full distance between the found and the nearest posture."""
 
     max_error: Array
-    """Greatest of them."""
+    """Greatest distance of a found posture from the nearest one."""
 
 
 def neighbour_curves(sets: Sequence[Array]) -> NeighbourCurves:
@@ -87,11 +88,10 @@ def _squares(rows: Array) -> Array:
     return found
 
 
-def _nearest(squares: Array) -> "np.ndarray[tuple[int], np.dtype[np.intp]]":
+def _nearest(squares: Array) -> NDArray[np.intp]:
     """Return the nearest other row of each; the diagonal is left out."""
-    count = len(squares)
-    others = squares + np.diag(np.full(count, np.inf))
-    return others.argmin(1)
+    found: NDArray[np.intp] = (squares + np.diag(np.full(len(squares), np.inf))).argmin(1)
+    return found
 
 
 def reproduce(request: ReproductionRequest) -> Reproduction:

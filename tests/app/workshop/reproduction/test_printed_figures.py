@@ -75,9 +75,9 @@ def test_gestures_and_accents() -> None:
     text = (SPECS / MOTION).read_text("utf-8")
     assert f"FMDistance alone: **{printed.rows[0][1]}**" in text
     both = rows_of(MOTION, "Table 8.1 MCC")
-    measures = {name: float(value) for name, value, *_ in both if name}
+    measures = {row[0]: float(row[1]) for row in both if row[0]}
     assert measures == accent_strength.PRINTED_MEASURES
-    others = {name.removesuffix(" regression"): float(value) for *_, name, value in both}
+    others = {row[-2].removesuffix(" regression"): float(row[-1]) for row in both}
     ours = accent_strength.PRINTED_CLASSIFIERS.items()
     assert others == {name.removesuffix(" regression"): value for name, value in ours}
     for figure in (
@@ -134,9 +134,9 @@ def test_solvers_and_ambient_occlusion() -> None:
         for joints, (step, time) in zip((6, 10), values, strict=True):
             assert IK[names[name]][joints] == (float(step), float(time))
     estimators = "crytek", "volumetric", "hbao"
-    for size, samples, *times in rows_of(FACES, "Size Samples / separable"):
-        for name, time in zip(estimators, times, strict=True):
-            assert THESIS_MS[name][int(size)][samples.endswith("yes")] == float(time)
+    for size, samples, *drawn in rows_of(FACES, "Size Samples / separable"):
+        for name, taken in zip(estimators, drawn, strict=True):
+            assert THESIS_MS[name][int(size)][samples.endswith("yes")] == float(taken)
 
 
 def test_facial_actions() -> None:
@@ -148,8 +148,7 @@ def test_facial_actions() -> None:
             values = [float(cell.strip("*")) for cell in cells]
             assert means[f"AU{name}"] == (tuple(values[:3]), tuple(values[3:]))
     rates = rows_of(FACES, " AU4 AU1+4")
-    names = "AU4", "AU1+4", "AU1+2", "AU20", "AU12", "AU6"
-    columns = zip(names, *(map(float, row[1:]) for row in rates), strict=True)
-    assert {name: pair for name, *pair in columns} == {
-        name: list(pair) for name, pair in single_facial_actions.FIRST_CHOICE.items()
-    }
+    actions = "AU4", "AU1+4", "AU1+2", "AU20", "AU12", "AU6"
+    with_wrinkles, without = ([float(cell) for cell in row[1:]] for row in rates)
+    printed = dict(zip(actions, zip(with_wrinkles, without, strict=True), strict=True))
+    assert printed == single_facial_actions.FIRST_CHOICE

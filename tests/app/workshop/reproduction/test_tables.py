@@ -14,6 +14,7 @@ from cubeling.app.workshop.reproduction.plots import inline_svg
 from cubeling.app.workshop.reproduction.registry import TABLES
 from cubeling.app.workshop.reproduction.result import Reproduction, ReproductionRequest
 from cubeling.app.workshop.reproduction.standing.posture_distance import neighbour_curves
+from cubeling.app.workshop.study.bundled import gesture_and_speech
 from cubeling.characters import Character
 from cubeling.characters.behaviour import GestureExpressivity
 from cubeling.characters.motion import PartMove
@@ -58,7 +59,7 @@ def test_a_study_is_simulated_the_same_each_time(monkeypatch, make, people) -> N
 
 
 def test_printed_shares_of_votes_follow_from_the_counts() -> None:
-    votes = studies.gesture_and_speech.COUNTS["intensity", "time"]
+    votes = gesture_and_speech.COUNTS["intensity", "time"]
     assert votes.total == 2 * studies.EVALUATORS
     assert round(100 * votes.better_share, 1) == 67.7
     assert round(votes.mean, 2) == 0.63
@@ -87,8 +88,8 @@ def test_all_components_find_every_neighbour() -> None:
 
 def test_the_duration_is_that_of_all_parts_once_they_are_scaled() -> None:
     """Equation 3.3 (M3 e)."""
-    legs = PartMove(2, 12, tuple(range(11)), 0.0)
-    arm = PartMove(4, 15, tuple(range(10)), 0.0)
+    legs = PartMove(2, 12, np.arange(11), 0.0)
+    arm = PartMove(4, 15, np.arange(10), 0.0)
     last = max(legs.arrival, arm.arrival)
     assert {duration(move, last, scaled=True) for move in (legs, arm)} == {15}
     assert duration(arm, last, scaled=False) == 13
