@@ -10,6 +10,7 @@ import msgspec
 from aiohttp import WSMsgType, web
 
 from cubeling.app.errors import AppError
+from cubeling.app.ui.web.fineness import FinenessControl
 from cubeling.app.ui.web.limits import RateLimit, WebLimits
 from cubeling.app.ui.web.messages import PICTURE, Role, Said, pack, read_said, unpack
 
@@ -20,6 +21,10 @@ LAST_WORDS_S = 1.0
 """Time for the message that says why a page is disconnected [s]."""
 
 
+Look = tuple[str, int]
+"""How a picture is wanted: its kind, "cards", "plain" or "cutout", and place in `FINENESSES`."""
+
+
 class ShownPicture(Protocol):
     """A picture for the pages."""
 
@@ -28,8 +33,8 @@ class ShownPicture(Protocol):
         """Of the picture, from 1; a page names it when it has shown it."""
         ...
 
-    def data(self, kind: str) -> bytes | None:
-        """Return it encoded: "cards", "plain" or "cutout"; None if nobody wanted that."""
+    def data(self, look: Look) -> bytes | None:
+        """Return it encoded; None if nobody wanted that kind."""
         ...
 
     def taken(self, page: str) -> float:
@@ -53,18 +58,24 @@ class PageClient:
         limits: WebLimits,
         clock: Callable[[], float],
     ) -> None:
-        self.page, self.role, self.kind = page, role, kind
+        self.page, self.role = page, role
         self.heard = clock()
         """When it said something last [s]."""
+        self._kind, self._fineness = kind, FinenessControl()
         self._socket, self._limits, self._clock = socket, limits, clock
         self._messages = RateLimit(limits.messages_per_s, limits.messages_burst_s)
         self._bytes = RateLimit(limits.bytes_per_s)
         self._texts: deque[str] = deque(maxlen=MAX_WAITING)
         self._sounds: deque[bytes] = deque(maxlen=MAX_WAITING)
         self._picture: ShownPicture | None = None
-        self._in_flight: deque[int] = deque()
+        self._in_flight: deque[tuple[int, float]] = deque()
         self._waiting = asyncio.Event()
         self._left: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+
+    @property
+    def look(self) -> Look | None:
+        """How it wants its pictures now; None if it wants none."""
+        return None if self.role == "camera" else (self._kind, self._fineness.level)
 
     def tell(self, **message: object) -> None:
         """Send a message in JSON."""
@@ -73,8 +84,10 @@ class PageClient:
 
     def show(self, picture: ShownPicture) -> None:
         """Send a picture, unless a newer one comes before it can be sent."""
-        self._picture = picture
-        self._waiting.set()
+        if self.look is not None:
+            self._fineness.offer(self._clock())
+            self._picture = picture
+            self._waiting.set()
 
     def sound(self, message: bytes) -> None:
         """Send a binary message that must not be left out, if it is read soon enough."""
@@ -137,8 +150,9 @@ class PageClient:
 
     def _hear(self, said: Said, hear: Callable[[Said], None]) -> None:
         if said.do == "shown":
-            while self._in_flight and self._in_flight[0] <= said.id:
-                self._in_flight.popleft()
+            while self._in_flight and self._in_flight[0][0] <= said.id:
+                _, sent = self._in_flight.popleft()
+                self._fineness.shown(self._clock() - sent)
             self._waiting.set()
         else:
             hear(said)
@@ -152,11 +166,12 @@ class PageClient:
             while self._sounds:
                 await self._socket.send_bytes(self._sounds.popleft())
             picture, free = self._picture, self._limits.pictures_in_flight - len(self._in_flight)
-            if picture is None or free <= 0:
+            look = self.look
+            if picture is None or look is None or free <= 0:
                 continue
             self._picture = None
-            data = picture.data(self.kind)
+            data = picture.data(look)
             if data is not None:
-                self._in_flight.append(picture.number)
+                self._in_flight.append((picture.number, self._clock()))
                 taken = picture.taken(self.page)
                 await self._socket.send_bytes(pack(PICTURE, picture.number, taken, data))

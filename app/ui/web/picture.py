@@ -1,20 +1,17 @@
 """Encoding the pictures for the pages, on a thread of its own."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.ui.web.client import Look
+from cubeling.app.ui.web.fineness import FINENESSES, Fineness
+
 Picture = NDArray[np.uint8]
-
-JPEG_QUALITY = 82
-"""Of OpenCV's encoder, 0…100: finer than a screen of a phone shows."""
-
-WEBP_QUALITY = 80
-"""The same of pictures with transparency."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +27,13 @@ class PagePicture:
     page_time: float
     """When, by the clock of that page [s]."""
 
-    encoded: dict[str, bytes] = field(default_factory=dict)
-    """It, by the kinds that somebody looks at."""
+    encoded: dict[Look, bytes] = field(default_factory=dict)
+    """It, by how somebody looks at it."""
 
-    def data(self, kind: str) -> bytes | None:
-        """Return it encoded; None if nobody wanted that kind when it was drawn."""
-        return self.encoded.get(kind)
+    def data(self, look: Look) -> bytes | None:
+        """Return it encoded, if need be in another fineness; None if nobody wanted that kind."""
+        same = (data for (kind, _), data in self.encoded.items() if kind == look[0])
+        return self.encoded.get(look) or next(same, None)
 
     def taken(self, page: str) -> float:
         """Return when its frame was taken, by the clock of a page; 0 if by another camera."""
@@ -54,15 +52,17 @@ class PictureEncoder:
     def __init__(self, show: Callable[[PagePicture], object]) -> None:
         self._show = show
         self._changed = threading.Condition()
-        self._newest: tuple[PagePicture, dict[str, Picture]] | None = None
+        self._newest: tuple[PagePicture, dict[str, Picture], Iterable[Look]] | None = None
         self._closing = False
         self._thread = threading.Thread(target=self._run, name="page pictures", daemon=True)
         self._thread.start()
 
-    def encode(self, picture: PagePicture, pixels: dict[str, Picture]) -> None:
-        """Encode what is seen in some kinds; nobody changes the pixels any more."""
+    def encode(
+        self, picture: PagePicture, pixels: dict[str, Picture], wanted: Iterable[Look]
+    ) -> None:
+        """Encode pixels of some kinds as they are wanted; nobody changes them any more."""
         with self._changed:
-            self._newest = picture, pixels
+            self._newest = picture, pixels, wanted
             self._changed.notify()
 
     def close(self) -> None:
@@ -78,18 +78,20 @@ class PictureEncoder:
                 self._changed.wait_for(lambda: self._closing or self._newest is not None)
                 if self._closing or self._newest is None:
                     return
-                (picture, pixels), self._newest = self._newest, None
-            for kind, image in pixels.items():
-                picture.encoded[kind] = encoded(image)
+                (picture, pixels, wanted), self._newest = self._newest, None
+            for kind, level in wanted:
+                picture.encoded[kind, level] = encoded(pixels[kind], FINENESSES[level])
             self._show(picture)
 
 
-def encoded(image: Picture) -> bytes:
+def encoded(image: Picture, fineness: Fineness = FINENESSES[0]) -> bytes:
     """Return a picture as JPEG, (H, W, 3) BGR, or as WebP, (H, W, 4) BGRA."""
-    if image.shape[2] == 4:
-        done, data = cv2.imencode(".webp", image, (cv2.IMWRITE_WEBP_QUALITY, WEBP_QUALITY))
-    else:
-        done, data = cv2.imencode(".jpg", image, (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY))
+    if fineness.scale != 1.0:
+        size = [max(round(fineness.scale * side), 1) for side in image.shape[1::-1]]
+        image = np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
+    clear = image.shape[2] == 4
+    setting = cv2.IMWRITE_WEBP_QUALITY if clear else cv2.IMWRITE_JPEG_QUALITY
+    done, data = cv2.imencode(".webp" if clear else ".jpg", image, (setting, fineness.quality))
     assert done, "OpenCV encodes any picture of a camera's size"
     return data.tobytes()
 

@@ -1,7 +1,7 @@
 """The screen of a session in browsers."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -83,7 +83,7 @@ class WebScreen:
         if step.picture is not None and wanted:
             self._number += 1
             page = PagePicture(self._number, *self._server.taken_by(step.frame.encoded))
-            self._encoder.encode(page, self._pictures(wanted))
+            self._encoder.encode(page, self._pictures({kind for kind, _ in wanted}), wanted)
         inputs, self._inputs = self._inputs, Inputs()
         return inputs
 
@@ -122,7 +122,7 @@ class WebScreen:
         """Show nothing any more; a second call does nothing."""
         self._encoder.close()
 
-    def _pictures(self, wanted: frozenset[str]) -> dict[str, Picture]:
+    def _pictures(self, wanted: Collection[str]) -> dict[str, Picture]:
         """Return the last step as the pages want to see it."""
         assert self._shown is not None
         step, robot = self._shown

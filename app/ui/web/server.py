@@ -19,7 +19,7 @@ from aiohttp.web_protocol import RequestHandler
 
 from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
-from cubeling.app.ui.web.client import LAST_WORDS_S, PageClient, ShownPicture
+from cubeling.app.ui.web.client import LAST_WORDS_S, Look, PageClient, ShownPicture
 from cubeling.app.ui.web.limits import RateLimit, WebLimits
 from cubeling.app.ui.web.messages import PLAYER_ROLES, Role, Said
 from cubeling.app.ui.web.page import Document, page
@@ -111,8 +111,6 @@ class WebServer:
         """The pictures of the camera."""
         self.camera = ""
         """Name of the camera that sends pictures, "ab12-back"; "" before the first."""
-        self.wanted: frozenset[str] = frozenset()
-        """The kinds of pictures that somebody looks at: "cards", "plain", "cutout"."""
         self.tiles: Sequence[bytes] = ()
         """The scenarios' pictures, as messages."""
         self._token, self._limits, self._clock = token, limits or WebLimits(), clock
@@ -142,6 +140,12 @@ class WebServer:
     def clients(self) -> tuple[str, ...]:
         """The pages that are connected now."""
         return tuple(self._clients)
+
+    @property
+    def wanted(self) -> frozenset[Look]:
+        """How somebody looks at pictures."""
+        looks = (each.look for each in tuple(self._clients.values()))
+        return frozenset(each for each in looks if each is not None)
 
     def invite(self, code: str) -> None:
         """Let pages that come from now on show a code, a picture as data: URL, to other phones."""
@@ -322,7 +326,6 @@ class WebServer:
         self._clients[client.page] = client
         if before is not None:  # the same page, whose connection was cut
             before.leave("this page is connected again")
-        self._count()
         client.tell(do="welcome", **self._welcome)
         client.tell(do="status", **self._status)
         self._place.join(client)
@@ -338,13 +341,8 @@ class WebServer:
             self._place.leave(client)
             if self._clients.get(client.page) is client:
                 del self._clients[client.page]
-            self._count()
         if why:
             await client.close(why)
-
-    def _count(self) -> None:
-        kinds = (each.kind for each in self._clients.values() if each.role != "camera")
-        self.wanted = frozenset(kinds)
 
     def _hear(self, client: PageClient, said: Said) -> None:
         if said.do == "tick":

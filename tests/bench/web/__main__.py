@@ -15,6 +15,7 @@ from typing import Any
 
 from tests.bench.web.camera import write_camera
 from tests.bench.web.chromium import chromium
+from tests.bench.web.faulty_proxy import FaultyProxy
 from tests.bench.web.firefox import firefox as open_firefox, program as firefox_program
 from tests.bench.web.guide_picture import picture
 from tests.bench.web.hostile import hostile
@@ -44,6 +45,32 @@ async def start(folder: Path) -> None:
     )
 
 
+async def line(folder: Path) -> None:
+    """Measure what the pictures of 720p need of a line, and how they fit into narrower ones."""
+    write_camera(folder / "camera.mjpeg", "companion", LOOP_S)
+    async with (
+        chromium(folder / "camera.mjpeg") as browser,
+        serving(folder, "--quality", "reduced") as served,
+        FaultyProxy(served.port) as proxy,
+    ):
+        tab = await browser.tab()
+        await play(tab, served.at(proxy.port))
+        for megabits in (0.0, 20.0, 10.0, 5.0, 2.5):
+            proxy.bytes_per_s = megabits * 1e6 / 8
+            await asyncio.sleep(SETTLE_S)
+            up, down, number = proxy.up, proxy.down, await tab.run("number")
+            _, late, rate = await sampled(tab, 10.0)
+            up, down = proxy.up - up, proxy.down - down
+            number, shown = await tab.run("number") - number, max(len(late), 1)
+            say(
+                f"{f'{megabits:.1f} Mbit/s' if megabits else 'as it is':>12}: {rate:4.1f} Hz, late "
+                f"by {median_95(late)}; up {up / max(number, 1) / 1000:.0f} kB a picture, "
+                f"{8 * up / 1e7:.1f} Mbit/s, {8 * RATE * up / max(number, 1) / 1e6:.1f} at 30 Hz; "
+                f"down {down / shown / 1000:.0f} kB, {8 * down / 1e7:.1f} Mbit/s, "
+                f"{8 * RATE * down / shown / 1e6:.1f} at 30 Hz"
+            )
+
+
 async def firefox(folder: Path) -> None:
     """Play in Firefox, whose camera shows moving colours; measure how late the picture is."""
     if firefox_program() is None:
@@ -58,9 +85,13 @@ async def firefox(folder: Path) -> None:
     say(f"{name} connects, and shows pictures of {shown}, late by {late} in the median")
 
 
+SETTLE_S = 6.0
+"""Time in which pictures become as fine as a line carries [s]."""
+
 SCENES: dict[str, Callable[[Path], Coroutine[Any, Any, None]]] = {
     "start": start,
     "hostile": hostile,
+    "line": line,
     "firefox": firefox,
     "picture": picture,
 }

@@ -12,7 +12,10 @@ class FaultyProxy:
         self._flowing = asyncio.Event()
         self._flowing.set()
         self._cut = False
-        self._bytes_per_s = 0.0
+        self.bytes_per_s = 0.0
+        """What it carries each way; 0 for all."""
+        self.up, self.down = 0, 0
+        """Bytes that went to the server, and from it."""
         self._writers: set[asyncio.StreamWriter] = set()
         self.port = 0
 
@@ -38,9 +41,9 @@ class FaultyProxy:
 
     async def slow_down(self, seconds: float, bytes_per_s: float) -> None:
         """Let only so much through each way of a connection, for some seconds."""
-        self._bytes_per_s = bytes_per_s
+        self.bytes_per_s = bytes_per_s
         await asyncio.sleep(seconds)
-        self._bytes_per_s = 0.0
+        self.bytes_per_s = 0.0
 
     async def cut(self, seconds: float) -> None:
         """End all connections, and refuse new ones for some seconds."""
@@ -60,15 +63,21 @@ class FaultyProxy:
             return
         pair = {writer, to_writer}
         self._writers |= pair
-        await asyncio.gather(self._copy(reader, to_writer), self._copy(to_reader, writer))
+        await asyncio.gather(
+            self._copy(reader, to_writer, up=True), self._copy(to_reader, writer, up=False)
+        )
         self._writers -= pair
 
-    async def _copy(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    async def _copy(
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, *, up: bool
+    ) -> None:
         with contextlib.suppress(OSError):
             while data := await reader.read(65536):
                 await self._flowing.wait()
-                if self._bytes_per_s:
-                    await asyncio.sleep(len(data) / self._bytes_per_s)
+                if self.bytes_per_s:
+                    await asyncio.sleep(len(data) / self.bytes_per_s)
+                self.up += len(data) if up else 0
+                self.down += 0 if up else len(data)
                 writer.write(data)
                 await writer.drain()
         writer.close()

@@ -5,7 +5,8 @@ const video = $("camera");
 // A canvas of the page encodes when the page is idle; one that is not of it does so at once.
 const grab = window.OffscreenCanvas ? new OffscreenCanvas(2, 2) : document.createElement("canvas");
 let facing = stored("localStorage", "facing", () => "environment");
-let stream, opening = false, encoding = false, number = 0, quality = .85;
+const QUALITIES = [.85, .7, .5, .35], TOO_MANY = .3, PATIENCE_S = 5;
+let stream, opening = false, encoding = false, number = 0;
 let place = "", taking = false; // "yours", "other", "free"; "" until the server has said it
 
 const hasCamera = () => welcome?.camera && (role === "play" || role === "camera");
@@ -72,7 +73,24 @@ function turnCamera() {
   openCamera();
 }
 
-function acknowledged(id) { inFlight.delete(id); }
+/* Coarser pictures, where a line carries no more: many find two of them still on their way. */
+let level = 0, seen = 0, late = 0, arrived = 0, counted = now(), fine = now();
+function acknowledged(id) {
+  inFlight.delete(id);
+  arrived++;
+}
+
+function judge() {
+  if (now() - counted < 1) return;
+  if (late || !arrived) fine = now();
+  if (arrived && late > TOO_MANY * seen) level = Math.min(level + 1, QUALITIES.length - 1);
+  else if (level && now() - fine > PATIENCE_S) {
+    level--;
+    fine = now();
+  }
+  seen = late = arrived = 0;
+  counted = now();
+}
 
 const nextFrame = () => video.requestVideoFrameCallback
   ? video.requestVideoFrameCallback(frame) : requestAnimationFrame(time => frame(time));
@@ -80,7 +98,11 @@ const nextFrame = () => video.requestVideoFrameCallback
 function frame(time, meta) {
   nextFrame();
   const width = video.videoWidth, height = video.videoHeight;
-  if (!width || place !== "yours" || encoding || inFlight.size >= IN_FLIGHT) return;
+  if (!width || place !== "yours") return;
+  seen++;
+  judge();
+  if (inFlight.size >= IN_FLIGHT) late++;
+  if (encoding || inFlight.size >= IN_FLIGHT) return;
   const scale = Math.min(1, MAX_SIDE / Math.max(width, height)), taken = (meta?.captureTime || time) / 1000;
   const size = [width, height].map(side => Math.round(side * scale / 2) * 2);
   if (grab.width !== size[0] || grab.height !== size[1]) [grab.width, grab.height] = size;
@@ -93,7 +115,7 @@ function frame(time, meta) {
 }
 
 function toJpeg() {
-  const type = "image/jpeg";
+  const type = "image/jpeg", quality = QUALITIES[level];
   return grab.convertToBlob ? grab.convertToBlob({type, quality}) : new Promise(done => grab.toBlob(done, type, quality));
 }
 

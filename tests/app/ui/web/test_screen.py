@@ -20,7 +20,7 @@ class Pages:
     """The server of the pages, as far as a screen sees it."""
 
     def __init__(self):
-        self.wanted: frozenset[str] = frozenset()
+        self.wanted: frozenset[tuple[str, int]] = frozenset()
         self.asked, self.words, self.statuses, self.shown = [], [], [], []
 
     def show(self, picture):
@@ -98,7 +98,7 @@ def test_pages_that_view_get_the_picture_alone_mirrored_as_asked(desk):
     rng = np.random.default_rng(3)
     picture = rng.integers(0, 255, (36, 64, 3), np.uint8)
     step = step_of(picture)
-    desk.pages.wanted = frozenset({"plain"})
+    desk.pages.wanted = frozenset({("plain", 0)})
     desk.pages.asked = ['{"do":"camera","name":"ab-front","mirror":true}']
     desk.screen.take_requests()
     desk.screen.show(step, ROBOT)

@@ -32,8 +32,8 @@ class Drawn:
     number: int
     size: int = 1000
 
-    def data(self, kind):
-        return bytes(self.size) if kind == "cards" else None
+    def data(self, look):
+        return bytes(self.size) if look[0] == "cards" else None
 
     def taken(self, page):
         return 0.0
@@ -286,7 +286,7 @@ def test_players_ask_and_viewers_cannot():
             await play.told("tick")
             assert server.take_requests() == [read_said('{"do":"play","name":"follow"}')]
             assert server.take_requests() == []
-            assert server.wanted == {"plain", "cards"}
+            assert server.wanted == {("plain", 0), ("cards", 0)}
 
     serve(use)
 
