@@ -315,7 +315,8 @@ class Playground:
         cast = self.cast
         told = cast.hear(inputs, controls.timestamp)
         seen = [SeenCube(state, controls), *(SeenCube(p.state, p.controls) for p in played)]
-        decisions = cast.decide(seen, told)
+        view = view_of(controls, self.sight.lens)
+        decisions = cast.decide(seen, told, view)
         for player, cube in zip(self.players, seen, strict=True):
             player.tracked.advise(frame, cube.state)
         self._lap("scenario")
@@ -324,7 +325,6 @@ class Playground:
             for player, cube in zip(self.players, seen, strict=True)
             for each in player.obstacles.update(cube.state, cube.controls)
         ]
-        view = view_of(controls, self.sight.lens)
         lead, *others = cast.perform(seen, decisions, told, tuple(things), view, replay)
         interior = self._window.update(state, controls, lead.command, inputs.inside)
         self._lap("animation")

@@ -43,14 +43,14 @@ UPRIGHT = (390, 844)
 """Size of the phone's screen [CSS px]."""
 
 WIDTH_PX = 640
-"""Width of its pictures: the line is tried, and not how quickly a busy computer tracks and draws."""
+"""Width of its pictures [px]: the line is tried, not how quickly a busy computer tracks."""
 
 WATCHED_S = 4.0
 """Length of what is watched after each fault [s]."""
 
 WATCH = (
-    "window.late = []; window.onpicture = (id, taken) => { if (taken && taken < now()) "
-    "{ window.lastTaken = taken; late.push(now() - taken); } }; true"
+    "window.lateness = []; window.onpicture = (id, taken) => { if (taken && taken < now()) "
+    "{ window.lastTaken = taken; lateness.push(now() - taken); } }; true"
 )
 """Keeps how late pictures are, but of those that were taken before the page was loaded again."""
 
@@ -183,7 +183,7 @@ async def one_round(phone: Phone, name: str) -> Round:
     back = await time_to_picture(phone.tab, 60.0)
     await phone.tab.run(WATCH)
     await asyncio.sleep(WATCHED_S)
-    late = json.loads(await phone.tab.run("JSON.stringify(late)"))
+    late = json.loads(await phone.tab.run("JSON.stringify(lateness)"))
     return Round(name, usual, back, tuple(late))
 
 

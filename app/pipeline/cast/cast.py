@@ -69,10 +69,12 @@ class Cast:
         member = self.members[names.index(act.who)]
         return refusal(act, member.character, member.actions)
 
-    def decide(self, seen: Sequence[SeenCube], told: Sequence[Inputs]) -> list[Outcome]:
+    def decide(
+        self, seen: Sequence[SeenCube], told: Sequence[Inputs], view: TableView | None = None
+    ) -> list[Outcome]:
         """Let each scenario decide; `seen` are the cubes of the players, `told` is of `hear`."""
         return [
-            member.decide(seen[member.player], own, self._heard)
+            member.decide(seen[member.player], own, self._heard, view)
             for member, own in zip(self.members, told, strict=True)
         ]
 

@@ -114,12 +114,25 @@ class CastMember:
         self._directing.take(character)
         self.body = None
 
-    def decide(self, seen: SeenCube, inputs: Inputs, heard: int | None = None) -> Outcome:
-        """Let its scenario decide, and do what it is told; `heard` is that of `Situation`."""
+    def decide(
+        self,
+        seen: SeenCube,
+        inputs: Inputs,
+        heard: int | None = None,
+        view: TableView | None = None,
+    ) -> Outcome:
+        """Let its scenario decide, and do what it is told; `heard`, `view` are of `Situation`."""
         animator, controls = self._animator, seen.controls
         cube = table_from_cube(seen.state, controls)
         situation = Situation(
-            self.posed, self.body, animator.actions, animator.walks, animator.length, cube, heard
+            self.posed,
+            self.body,
+            animator.actions,
+            animator.walks,
+            animator.length,
+            cube,
+            heard,
+            view,
         )
         scenario = type(self.scenario)
         with scenario_errors(scenario):

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.table.props import PosedBody
-from cubeling.characters import PosedCharacter
+from cubeling.characters import PosedCharacter, TableView
 from cubeling.tracking import CubeControls, CubeState
 
 PLAYER_POSITION = np.array([0.0, 2.0])
@@ -37,6 +37,9 @@ class Situation:
 
     heard: int | None = None
     """Number in the cast of who has ended a line since the previous frame; None for nobody."""
+
+    view: TableView | None = None
+    """From where and how far the table is seen; None before the table is known."""
 
 
 @dataclass(frozen=True)

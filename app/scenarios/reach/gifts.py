@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.pipeline.table.props import GRIP, PosedBody, Side, Thing
 from cubeling.app.scenarios.reach.gift import Gift
+from cubeling.characters import TableView
 
 Point = NDArray[np.float64]
 
@@ -22,6 +23,13 @@ HOMES: dict[str, tuple[float, float]] = {
     "flag": (0.20, -0.09),
 }
 """Where each thing stands at first, (x, z) from where the cube was first seen [m]."""
+
+TURNS_RAD = tuple(sign * 0.15 * step for step in range(11) for sign in (1, -1))
+"""By how much that place is turned about the cube, the smallest turn that brings it into the
+picture: one that is higher than it is wide shows little beside the cube."""
+
+EXTENT_M = np.array([[-0.035, 0.0, 0.0], [0.035, 0.0, 0.0], [0.0, 0.1, 0.0]])
+"""Points of a thing on its place that are to be in the picture [m]."""
 
 SIDES_RAD = {"flower": math.radians(165), "balloon": math.radians(15), "flag": math.radians(215)}
 """Where each thing is put down: its direction from the cube, from +x towards the player."""
@@ -59,11 +67,11 @@ class Gifts:
         self._gifts: list[Gift] = []
         self._since = -math.inf
 
-    def lay_out(self, cube: Point) -> None:
-        """Put the things on the table about a cube, if they are not there yet."""
+    def lay_out(self, cube: Point, view: TableView | None = None) -> None:
+        """Put the things on the table about a cube, if they are not there yet, and in view."""
         if not self._gifts:
             self._gifts = [
-                Gift(name, np.array([cube[0] + x, 0.0, cube[2] + z]))
+                Gift(name, _place_in_view(cube * [1.0, 0.0, 1.0], np.array([x, 0.0, z]), view))
                 for name, (x, z) in HOMES.items()
             ]
 
@@ -198,6 +206,17 @@ class Gifts:
         self.doing, self._since = doing, now
         if doing in ("wait", "give", "rejoice"):
             self.gift = None
+
+
+def _place_in_view(centre: Point, offset: Point, view: TableView | None) -> Point:
+    """Return a place beside a centre, turned about it into the picture if that can be done."""
+    if view is not None:
+        for turn in TURNS_RAD:
+            c, s = math.cos(turn), math.sin(turn)
+            place = centre + offset @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+            if not view.misses(place + EXTENT_M, ()).any():
+                return np.asarray(place)
+    return np.asarray(centre + offset)
 
 
 def _nearer_side(body: PosedBody, place: Sequence[float] | Point) -> Side:

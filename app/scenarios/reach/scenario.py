@@ -107,7 +107,7 @@ class Reach:
         visible = self._presence.update(controls)
         if situation.cube is not None:
             self._cube = situation.cube
-            self._gifts.lay_out(situation.cube[:3, 3])
+            self._gifts.lay_out(situation.cube[:3, 3], situation.view)
             self._gifts.make_way(situation.cube[:3, 3], now)
         if inputs.clear or controls.shaken:
             self._gifts.scatter(body, now)

@@ -39,6 +39,9 @@ from cubeling.app.ui.palette import (
 )
 from cubeling.tracking import has_icon
 
+HALF_CAPITAL = 8.5 / 24.0
+"""Half the height of capital letters, as a share of the size of a text."""
+
 CARD_HEIGHT = 108.0
 BAR_Y = 70.0
 """Distance of a bar from its card's top edge."""
@@ -207,7 +210,8 @@ def _hint(words: str, width: float, scale: float) -> Card:
     size = min(24.0, 24.0 * room / text_width(words, 24))  # a cube's name may be long
     card_width = text_width(words, size) + 56
     canvas = Canvas(card_width, HINT_HEIGHT, scale)
-    canvas.text(card_width / 2, 32.5, words, size, INK, "middle")
+    baseline = HINT_HEIGHT / 2 + HALF_CAPITAL * size
+    canvas.text(card_width / 2, baseline, words, size, INK, "middle")
     return canvas.card((width - card_width) / 2, HINT_TOP)
 
 

@@ -1,5 +1,6 @@
 """Small things are fetched, carried in the hand, and put down beside the cube."""
 
+import itertools
 import math
 from types import SimpleNamespace
 from typing import Any
@@ -7,9 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from cubeling.app.pipeline.table.obstacles import view_of
 from cubeling.app.pipeline.table.props import GRIP
 from cubeling.app.scenarios.reach.gift import HOP_M, HOP_S, SETTLE_S
 from cubeling.app.scenarios.reach.gifts import AT_HAND_M, HOMES, PATIENCE_S, REJOICE_S, Gifts
+from cubeling.tracking.synthetic import SyntheticOptions
+from cubeling.tracking.synthetic.source import EYE_M, LOOK_AT_M, look_at, webcam
 
 FRAME = 1 / 30
 EDGE = 0.06
@@ -165,3 +169,27 @@ def test_a_thing_hops_aside_when_the_cube_is_put_down_on_it(play):
         play.gifts.make_way(under, play.now)
         play.on(FRAME, under, free=False)
     assert math.dist(play.thing("flag").place[[0, 2]], under[[0, 2]]) > EDGE / 2 * math.sqrt(2)
+
+
+def seen_by(width, height):
+    """Return how a camera that is near sees the table, with the cube in the middle."""
+    camera = webcam(SyntheticOptions(width=width, height=height))
+    return view_of(SimpleNamespace(camera_from_table=look_at(0.65 * EYE_M, LOOK_AT_M)), camera)
+
+
+def places(view):
+    gifts = Gifts(EDGE)
+    gifts.lay_out(np.zeros(3), view)
+    return {each.name: each.place for each in gifts.things(0.0)}
+
+
+def test_all_things_lie_in_the_picture_of_a_phone_that_is_held_upright():
+    wide, upright = places(seen_by(1280, 720)), places(seen_by(720, 1280))
+    assert {name: tuple(place[[0, 2]]) for name, place in wide.items()} == HOMES
+    view = seen_by(720, 1280)
+    assert view.misses(np.array([*wide.values()]), ()).any(), "they would not"
+    assert not view.misses(np.array([*upright.values()]), ()).any()
+    for name, place in upright.items():
+        assert np.hypot(*place[[0, 2]]) == pytest.approx(np.hypot(*HOMES[name]))
+    apart = [np.linalg.norm(a - b) for a, b in itertools.combinations(upright.values(), 2)]
+    assert min(apart) > 0.1
