@@ -2,6 +2,7 @@
 
 import base64
 import hashlib
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -13,6 +14,9 @@ MAX_PAGE_BYTES = 30_000
 
 SCRIPTS = ("words.js", "base.js", "link.js", "picture.js", "camera.js", "sound.js", "touch.js")
 """The parts of the page's script, in their order."""
+
+FOR_PEOPLE = re.compile(r"^\s+|^(//.*|/\*.*\*/)\n", re.MULTILINE)
+"""What a browser does not need: indents, and lines that are comments."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,7 @@ def document(
 
     def joined(names: Iterable[str]) -> str:
         text = "".join((where / each).read_text("utf-8") for each in names)
-        return "\n".join(map(str.strip, text.splitlines()))  # a browser needs no indents
+        return FOR_PEOPLE.sub("", text)
 
     style, script = joined(styles), joined(scripts)
     html = joined([name]).replace("/*STYLE*/", style).replace("/*SCRIPT*/", script)

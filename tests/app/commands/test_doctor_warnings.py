@@ -52,7 +52,7 @@ def test_a_port_on_usb_may_be_a_robot(monkeypatch):
 
 
 def test_what_a_phone_needs_is_named_with_the_browser_for_its_tests(monkeypatch):
-    monkeypatch.setattr(doctor.shutil, "which", lambda name, path=None: None)
+    monkeypatch.setattr("shutil.which", lambda name, path=None: None)
     assert finding("phone").verdict == "good"
     assert "tests of the page are left out" in finding("phone").found
     monkeypatch.setattr(doctor, "PHONE_LIBRARIES", ("aiohttp", "no_such_library"))

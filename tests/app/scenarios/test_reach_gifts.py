@@ -174,7 +174,8 @@ def test_a_thing_hops_aside_when_the_cube_is_put_down_on_it(play):
 def seen_by(width, height):
     """Return how a camera that is near sees the table, with the cube in the middle."""
     camera = webcam(SyntheticOptions(width=width, height=height))
-    return view_of(SimpleNamespace(camera_from_table=look_at(0.65 * EYE_M, LOOK_AT_M)), camera)
+    controls: Any = SimpleNamespace(camera_from_table=look_at(0.65 * EYE_M, LOOK_AT_M))
+    return view_of(controls, camera)
 
 
 def places(view):

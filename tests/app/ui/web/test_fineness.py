@@ -19,7 +19,8 @@ def levels_over(
     megabits: float, seconds: float, rate: float = RATE, down: tuple[float, float] = (0.0, 0.0)
 ) -> list[int]:
     """Return the level at each picture over a line of a capacity, which may be down."""
-    control, sent, free, found = FinenessControl(), [], 0.0, []
+    control, free, found = FinenessControl(), 0.0, []
+    sent: list[tuple[float, float]] = []
     for number in range(round(seconds * rate)):
         now = number / rate
         while sent and sent[0][1] <= now:

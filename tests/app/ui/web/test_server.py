@@ -6,6 +6,7 @@ import time
 from contextlib import asynccontextmanager, closing
 from dataclasses import dataclass
 from types import SimpleNamespace
+from typing import Any
 
 import aiohttp
 import cv2
@@ -224,12 +225,13 @@ def test_a_page_that_is_connected_anew_keeps_its_place_unless_it_is_another_thin
 def test_a_camera_that_sends_nothing_gives_its_place_up():
     now = [100.0]
     places: dict[str, list[str]] = {"first": [], "second": []}
-    first, second = (
+    pages: Any = [
         SimpleNamespace(
             page=name, role="play", tell=lambda do, camera, name=name: places[name].append(camera)
         )
         for name in places
-    )
+    ]
+    first, second = pages
     place = CameraPlace(lambda: now[0])
     place.join(first)
     place.join(second)
@@ -249,7 +251,7 @@ def test_a_camera_that_sends_nothing_gives_its_place_up():
 def test_further_pages_are_open_and_further_paths_ask_for_the_token(tmp_path):
     (tmp_path / "desk.html").write_text("<style>/*STYLE*/</style><script>/*SCRIPT*/</script>")
     (tmp_path / "desk.css").write_text("p{margin:0}\n")
-    (tmp_path / "desk.js").write_text("let desk;\n")
+    (tmp_path / "desk.js").write_text("/* The desk. */\n  let desk;\n")
 
     async def answer(request):
         return web.json_response({"asked": request.query["name"]})
@@ -261,7 +263,8 @@ def test_further_pages_are_open_and_further_paths_ask_for_the_token(tmp_path):
     async def use(server):
         async with aiohttp.ClientSession(f"http://{LOOPBACK}:{server.ports[0]}") as session:
             async with session.get("/desk") as found:
-                assert await found.text() == "<style>p{margin:0}</style><script>let desk;</script>"
+                text = await found.text()
+                assert text == "<style>p{margin:0}\n</style><script>let desk;\n</script>"
                 assert "sha256-" in found.headers["Content-Security-Policy"]
             async with session.get(asked) as found:
                 assert found.status == 403
