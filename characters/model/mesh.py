@@ -67,7 +67,18 @@ class Material:
     """Strength of the normal texture."""
 
     emissive: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Emitted light, linear RGB; above 1 as with KHR_materials_emissive_strength."""
+    """Emitted light, linear RGB; above 1 as with KHR_materials_emissive_strength. Multiplied by the
+    texture below."""
+
+    emissive_texture: NDArray[np.uint8] | None = None
+    """Where it is emitted, (height, width, 3) sRGB, or None for everywhere."""
+
+    occlusion_texture: NDArray[np.uint8] | None = None
+    """Share of the light from all around that arrives, in red, (height, width, 3) linear; or None
+    for all of it."""
+
+    occlusion_strength: float = 1.0
+    """How much of that takes effect, 0…1."""
 
     alpha_cutoff: float | None = None
     """Alpha below which nothing is drawn; None for an opaque surface."""
@@ -90,12 +101,14 @@ class Material:
 
     @property
     def textures(self) -> tuple[NDArray[np.uint8] | None, ...]:
-        """Textures of base colour, of metalness and roughness, of normals, and of toon shade."""
+        """Colour, metalness and roughness, normals, toon shade, emission, and occlusion."""
         return (
             self.base_color_texture,
             self.metallic_roughness_texture,
             self.normal_texture,
             None if self.toon is None else self.toon.texture,
+            self.emissive_texture,
+            self.occlusion_texture,
         )
 
 

@@ -133,6 +133,7 @@ SCHEMA: Json = {
             },
             "normalTexture": _TEXTURE,
             "emissiveTexture": _TEXTURE,
+            "occlusionTexture": _TEXTURE | {"strength": REAL},
             "emissiveFactor": _NUMBER_LISTS[3],
             "alphaMode": TEXT,
             "alphaCutoff": REAL,

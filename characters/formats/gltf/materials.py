@@ -131,8 +131,10 @@ def _material(
     diffuse = unlit or toon is not None
     color, surface = pbr.get("baseColorTexture"), pbr.get("metallicRoughnessTexture")
     bumps, shade = material.get("normalTexture"), (toon or {}).get("shadeMultiplyTexture")
-    surface, bumps = None if diffuse else surface, None if unlit else bumps
-    textures = [texture for texture in (color, surface, bumps, shade) if texture]
+    open_share, glow = material.get("occlusionTexture"), material.get("emissiveTexture")
+    surface, open_share = (None if diffuse else each for each in (surface, open_share))
+    bumps = None if unlit else bumps
+    textures = [each for each in (color, surface, bumps, shade, glow, open_share) if each]
     mapping = _mapping(textures[0]) if textures else (0, None)
     if any(not _same(_mapping(texture), mapping) for texture in textures):
         # A mesh has one set of coordinates: that of its first texture.
@@ -141,8 +143,9 @@ def _material(
             CharacterWarning,
             stacklevel=2,
         )
-        color, surface, bumps, shade = (
-            t if t and _same(_mapping(t), mapping) else None for t in (color, surface, bumps, shade)
+        color, surface, bumps, shade, glow, open_share = (
+            t if t and _same(_mapping(t), mapping) else None
+            for t in (color, surface, bumps, shade, glow, open_share)
         )
     factor = [float(c) for c in pbr.get("baseColorFactor", (1, 1, 1, 1))]
     return MappedMaterial(
@@ -154,7 +157,10 @@ def _material(
             metallic_roughness_texture=images.texture(surface["index"], "RGB") if surface else None,
             normal_texture=images.texture(bumps["index"], "RGB") if bumps else None,
             normal_scale=float(bumps.get("scale", 1.0)) if bumps else 1.0,
-            emissive=_emission(material, images),
+            emissive=_emission(material, images, glow),
+            emissive_texture=images.texture(glow["index"], "RGB") if glow else None,
+            occlusion_texture=images.texture(open_share["index"], "RGB") if open_share else None,
+            occlusion_strength=float(open_share.get("strength", 1.0)) if open_share else 1.0,
             alpha_cutoff=_cutoff(material),
             blended=material.get("alphaMode") == "BLEND",
             double_sided=bool(material.get("doubleSided", False)),
@@ -192,13 +198,15 @@ def _same(a: tuple[int, Array | None], b: tuple[int, Array | None]) -> bool:
     return a[0] == b[0] and np.allclose(first, second, atol=1e-6)
 
 
-def _emission(material: Json, images: _ImageDecoder) -> tuple[float, float, float]:
-    """Return the emission; an emissive texture counts with its mean colour."""
+def _emission(
+    material: Json, images: _ImageDecoder, drawn: Json | None
+) -> tuple[float, float, float]:
+    """Return the emission; a texture of it that is not `drawn` counts with its mean colour."""
     factor = np.array(material.get("emissiveFactor", (0.0, 0.0, 0.0)), float)
     strength = material.get("extensions", {}).get("KHR_materials_emissive_strength", {})
     factor *= float(strength.get("emissiveStrength", 1.0))
     texture = material.get("emissiveTexture")
-    if texture and factor.any():
+    if texture and factor.any() and drawn is None:
         image = images.texture(texture["index"], "RGB")
         if image is not None:
             factor *= (image.reshape(-1, 3) / 255.0).mean(axis=0) ** 2.2  # sRGB to linear
@@ -254,6 +262,11 @@ class MaterialWriter:
             self._extend(item, mtoon.EXTENSION, mtoon.write(material.toon, shade))
         if any(material.emissive):
             self._set_emission(item, material.emissive)
+        if material.emissive_texture is not None:
+            item["emissiveTexture"] = self._texture(material.emissive_texture)
+        if material.occlusion_texture is not None:
+            share = {"strength": material.occlusion_strength}
+            item["occlusionTexture"] = self._texture(material.occlusion_texture) | share
         if material.blended:
             item["alphaMode"] = "BLEND"
         elif material.alpha_cutoff is not None:

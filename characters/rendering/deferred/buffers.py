@@ -14,12 +14,19 @@ from cubeling.characters.skeleton.pose import Array
 BUFFER_UNITS = {
     **{"normal_id": 0, "position": 1, "albedo_rough": 2, "shade_metal": 3},
     **{"diffuse": 4, "specular": 5, "ambient": 6, "falling": 7},
-    **{"surfaces": 8, "occlusion": 10, "light": 11, "visibility": 12, "pixel_position": 14},
+    **{
+        "surfaces": 8,
+        "glow_open": 13,
+        "occlusion": 10,
+        "light": 11,
+        "visibility": 12,
+        "pixel_position": 14,
+    },
 }
 """Texture units by the names that shaders have for them: the layers of `GeometryBuffer`, those of
-`LightBuffer`, the records of all surfaces (see `surface_records`), ambient occlusion, the sum of
-all light, and the share of the lamp that arrives, with the places of the pixels that it is known
-for."""
+`LightBuffer`, the records of all surfaces (see `surface_records`), emitted light, ambient
+occlusion, the sum of all light, and the share of the lamp that arrives, with the places of the
+pixels that it is known for."""
 
 MAX_SURFACES = 1024
 """Surfaces of one picture that can be told apart, as 16-bit floats count to 2048: all others are
@@ -44,14 +51,19 @@ class GeometryBuffer:
         """Linear RGB of the surface, and its roughness."""
         self.shade_metal = _texture(context, size, "f2")
         """Linear RGB of what toon shading shows in the dark, or 1 for skin and 0; and metalness."""
+        self.glow_open = _texture(context, size, "f2")
+        """Linear RGB that it emits, and the share of the light from all around that its own folds
+        let through."""
         self._layers = (self.normal_id, self.position, self.albedo_rough, self.shade_metal)
+        self._layers += (self.glow_open,)
         self.framebuffer = context.framebuffer(self._layers, depth)
         """Draws on all of them."""
 
     def bind(self) -> None:
         """Bind the layers to their units."""
-        for unit, layer in enumerate(self._layers, BUFFER_UNITS["normal_id"]):
+        for unit, layer in enumerate(self._layers[:4], BUFFER_UNITS["normal_id"]):
             layer.use(unit)
+        self.glow_open.use(BUFFER_UNITS["glow_open"])
 
     def release(self) -> None:
         """Release the textures; a second call does nothing."""
@@ -223,12 +235,11 @@ def buffer_triangle(
 
 
 def surface_records(characters: tuple[CharacterInstance, ...]) -> Array:
-    """Return what the lighting needs to know of each surface of a picture, (surfaces, 3, 4).
+    """Return what the lighting needs to know of each surface of a picture, (surfaces, 2, 4).
 
-    First 1 for toon shading or 0, its shift, how toony it is, and its evenness; then what the
-    surface emits, linear RGB, and the height of its character [m]; then how far it scatters light,
-    relative to the skin of a human as tall as people are. The row of a surface is its number in
-    `GeometryBuffer.normal_id` less 1.
+    First 1 for toon shading or 0, its shift, how toony it is, and its evenness; then how far it
+    scatters light, relative to the skin of a human as tall as people are, and the height of its
+    character [m]. The row of a surface is its number in `GeometryBuffer.normal_id` less 1.
     """
     rows = []
     for character in characters:
@@ -236,9 +247,8 @@ def surface_records(characters: tuple[CharacterInstance, ...]) -> Array:
         for part in character.skinned.surfaces:
             toon = part.material.toon
             shading = (0, 0, 0, 0) if toon is None else (1, toon.shift, toon.toony, toon.evenness)
-            scattering = (scale * part.material.scattering, 0, 0, 0)
-            rows.append((shading, (*part.material.emissive, character.height), scattering))
-    return np.array(rows, float).reshape(-1, 3, 4)
+            rows.append((shading, (scale * part.material.scattering, character.height, 0, 0)))
+    return np.array(rows, float).reshape(-1, 2, 4)
 
 
 def _texture(

@@ -17,9 +17,12 @@ from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
 GL_SRGB8_ALPHA8 = 0x8C43
 """OpenGL's texture format that is decoded from sRGB when it is sampled."""
 
-TEXTURE_UNITS = {"base_texture": 0, "surface_map": 1, "bump_map": 2, "shade_map": 3, "face_map": 4}
-"""Texture units of a material's base colour, roughness and metalness, normals, and toon shade, and
-of the wrinkles and the blood of a face."""
+TEXTURE_UNITS = {
+    **{"base_texture": 0, "surface_map": 1, "bump_map": 2, "shade_map": 3},
+    **{"glow_map": 4, "occlusion_map": 5, "face_map": 6},
+}
+"""Texture units of a material's base colour, roughness and metalness, normals, toon shade, emission
+and occlusion, and of the wrinkles and the blood of a face."""
 
 FACE_FEATURE = "FACE"
 """What the shaders test to draw wrinkles and blood."""
@@ -48,12 +51,16 @@ as small as triangles."""
 BLENDED = "BLENDED"
 """Feature of a surface that is partly transparent, for the programs that can draw it so."""
 
-_COLOR_UNITS = (TEXTURE_UNITS["base_texture"], TEXTURE_UNITS["shade_map"])  # the others are linear
+# All others are linear.
+_COLOR_UNITS = tuple(TEXTURE_UNITS[name] for name in ("base_texture", "shade_map", "glow_map"))
 
 SKIN_FEATURE = "SKIN"
 """Feature of a surface below which light spreads, for the programs that keep that."""
 
-MAPPED_FEATURES = {"TEXTURED", "SURFACE", "BUMPS", "SHADE", FACE_FEATURE, SKIN_FEATURE}
+MAPPED_FEATURES = {
+    *("TEXTURED", "SURFACE", "BUMPS", "SHADE", "GLOW_MAP", "OCCLUSION"),
+    *(FACE_FEATURE, SKIN_FEATURE),
+}
 """Features that need texture coordinates."""
 
 PLACED_FEATURES = {"BUMPS", GEOMETRY, CASTER, BEHIND, FACE_FEATURE, MIRRORED}
@@ -126,6 +133,7 @@ class Surface:
                 cutoff=material.alpha_cutoff or 0.0,
                 bump_scale=material.normal_scale,
                 glow=material.emissive,
+                occlusion_strength=material.occlusion_strength,
                 screen_layer=self.screen_layer,
             )
         set_uniforms(array.program, two_sided=material.double_sided)
@@ -268,9 +276,10 @@ def surface_features(material: Material) -> frozenset[str]:
     """Return what a material has beyond one colour, one roughness and one metalness.
 
     TEXTURED: a texture of the base colour; SURFACE: one of roughness and metalness; BUMPS: a normal
-    map; GLOW: emitted light; CUTOFF: holes where alpha is low; BLENDED: partly transparent instead,
-    where that can be drawn; TOON: MToon's shading; SHADE: its texture; SKIN: light spreads below
-    it. The shaders test these.
+    map; GLOW: emitted light; GLOW_MAP: a texture of it; OCCLUSION: one of what arrives of the light
+    from all around; CUTOFF: holes where alpha is low; BLENDED: partly transparent instead, where
+    that can be drawn; TOON: MToon's shading; SHADE: its texture; SKIN: light spreads below it. The
+    shaders test these.
 
     >>> sorted(surface_features(Material(emissive=(0.0, 0.2, 0.0), alpha_cutoff=0.5)))
     ['CUTOFF', 'GLOW']
@@ -280,6 +289,8 @@ def surface_features(material: Material) -> frozenset[str]:
         "SURFACE": material.metallic_roughness_texture is not None and material.toon is None,
         "BUMPS": material.normal_texture is not None and material.normal_scale != 0.0,
         "GLOW": any(material.emissive),
+        "GLOW_MAP": any(material.emissive) and material.emissive_texture is not None,
+        "OCCLUSION": material.occlusion_texture is not None and material.toon is None,
         "CUTOFF": material.alpha_cutoff is not None,
         BLENDED: material.blended and material.alpha_cutoff is not None,
         "TOON": material.toon is not None,

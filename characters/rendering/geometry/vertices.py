@@ -249,6 +249,8 @@ def _material_key(material: Material) -> tuple[object, ...]:
         base_color_texture=None,
         metallic_roughness_texture=None,
         normal_texture=None,
+        emissive_texture=None,
+        occlusion_texture=None,
         face=None,
         toon=None if material.toon is None else replace(material.toon, texture=None),
     )

@@ -59,6 +59,7 @@ layout(location = 0) out vec4 normal_id;    // unit normal in the camera frame, 
 layout(location = 1) out vec4 position;     // in the camera frame [m], and the packed normal of the triangle
 layout(location = 2) out vec4 albedo_rough; // linear RGB, and roughness
 layout(location = 3) out vec4 shade_metal;  // colour of the toon shade, or whether this is skin, and metalness
+layout(location = 4) out vec4 glow_open;    // emitted light, and the share of that from all around that arrives
 #else
 #include "shading"
 #include "encoding"
@@ -69,9 +70,6 @@ layout(location = 3) out vec4 shade_metal;  // colour of the toon shade, or whet
 uniform float shade_shift;
 uniform float toony;
 uniform float evenness;
-#endif
-#ifdef GLOW
-uniform vec3 glow;
 #endif
 
 in vec3 toward;
@@ -93,6 +91,7 @@ void main() {
     vec3 flat_normal = cross(dFdy(position.xyz), dFdx(position.xyz));
     position.w = number_of_normal(flat_normal * inversesqrt(max(dot(flat_normal, flat_normal), 1e-30)));
     albedo_rough = vec4(albedo, finish.x);
+    glow_open = vec4(surface_glow(), surface_openness());
 #ifdef TOON
     shade_metal = vec4(surface_shade(), 0.0);
 #else
@@ -124,9 +123,12 @@ void main() {
     Reflected light = reflected(albedo, finish.y, finish.x, n, toward, around);
 #endif
 #endif
+#ifdef OCCLUSION
+    light.ambient *= surface_openness();
+#endif
     vec3 sum = light.diffuse + light.specular + light.ambient;
 #ifdef GLOW
-    sum += glow;
+    sum += surface_glow();
 #endif
     color = vec4(shown(sum), 1.0);
 #endif

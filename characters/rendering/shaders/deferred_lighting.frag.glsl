@@ -30,7 +30,7 @@ void main() {
     if (!is_seen(n.w)) discard;
     int surface = surface_row(n.w);
     vec4 toon = texelFetch(surfaces, ivec2(0, surface), 0);
-    vec4 glow_height = texelFetch(surfaces, ivec2(1, surface), 0);
+    vec4 glow = texelFetch(glow_open, here, 0);
     vec3 p = texelFetch(position, here, 0).xyz;
     vec4 albedo = texelFetch(albedo_rough, here, 0);
     vec4 shade = texelFetch(shade_metal, here, 0);
@@ -41,7 +41,7 @@ void main() {
 #ifdef OCCLUDED
     float above = 1.0;          // what is near the table is known better
 #else
-    float above = dot(p - table, up) / (NEAR_TABLE * glow_height.w);
+    float above = dot(p - table, up) / (NEAR_TABLE * texelFetch(surfaces, ivec2(1, surface), 0).y);
 #endif
     Reflected light;
     if (toon.x > 0.5) {
@@ -68,15 +68,15 @@ void main() {
 #endif
     }
     vec3 visible = vec3(1.0);
-    float open = 1.0;
+    float open = glow.a;
 #ifdef VISIBILITY
     visible = visible_at(here, p.z);
 #endif
 #ifdef OCCLUDED
-    open = texelFetch(occlusion, here, 0).r;
+    open *= texelFetch(occlusion, here, 0).r;
 #endif
     diffuse = vec4(visible * light.diffuse, 1.0);
-    specular = vec4(visible * light.specular + glow_height.rgb, 1.0);
+    specular = vec4(visible * light.specular + glow.rgb, 1.0);
     ambient = open * vec4(light.ambient, 1.0);
     bool skin = toon.x < 0.5 && shade.r > 0.5;
     falling = skin ? vec4(visible * key * max(dot(n.xyz, to_light), 0.0), 1.0) : vec4(0.0);

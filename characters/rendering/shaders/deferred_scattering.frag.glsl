@@ -38,7 +38,7 @@ void main() {
     vec4 light = texelFetch(falling, here, 0);
     scattered = vec4(texelFetch(diffuse, here, 0).rgb, 0.0);
     if (light.w < 0.5) return;      // not skin
-    float scale = texelFetch(surfaces, ivec2(2, surface_row(n.w)), 0).x;
+    float scale = texelFetch(surfaces, ivec2(1, surface_row(n.w)), 0).x;
     vec3 point = texelFetch(position, here, 0).xyz;
     vec3 radius = scale * level_radius;
     float texels = radius[LEVELS - 1] * focal / point.z;

@@ -5,6 +5,7 @@ uniform sampler2D normal_id;
 uniform sampler2D position;
 uniform sampler2D albedo_rough;
 uniform sampler2D shade_metal;
+uniform sampler2D glow_open;
 
 // Whether a character is seen here.
 bool is_seen(float id) {

@@ -16,6 +16,16 @@ uniform sampler2D surface_map;  // roughness in green, metalness in blue
 uniform sampler2D bump_map;     // normals in tangent space
 uniform float bump_scale;
 #endif
+#ifdef GLOW
+uniform vec3 glow;
+#endif
+#ifdef GLOW_MAP
+uniform sampler2D glow_map;
+#endif
+#ifdef OCCLUSION
+uniform sampler2D occlusion_map;    // share of the light from all around that arrives, in red
+uniform float occlusion_strength;
+#endif
 #ifdef PLACED
 in vec3 place;                  // in the table frame
 #endif
@@ -118,6 +128,27 @@ vec2 surface_finish() {
     finish *= texture(surface_map, where).gb;
 #endif
     return finish;
+}
+
+// Emitted light.
+vec3 surface_glow() {
+    vec3 emitted = vec3(0.0);
+#ifdef GLOW
+    emitted = glow;
+#endif
+#ifdef GLOW_MAP
+    emitted *= texture(glow_map, where).rgb;
+#endif
+    return emitted;
+}
+
+// Share of the light from all around that arrives.
+float surface_openness() {
+#ifdef OCCLUSION
+    return 1.0 - occlusion_strength * (1.0 - texture(occlusion_map, where).r);
+#else
+    return 1.0;
+#endif
 }
 
 vec3 surface_normal() {

@@ -162,9 +162,25 @@ def test_emission_is_its_factor_times_its_texture(tmp_path):
     strength = {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}}
     material = {"emissiveFactor": [1, 0.5, 0], "extensions": strength}
     assert load(tmp_path, dressed(material)).material.emissive == (4.0, 2.0, 0.0)
-    dark = encoded(np.zeros((2, 2, 3), np.uint8))
+    spots = pixels(3)
     material["emissiveTexture"] = {"index": 0}
-    assert load(tmp_path, dressed(material, dark)).material.emissive == (0.0, 0.0, 0.0)
+    read = load(tmp_path, dressed(material, encoded(spots))).material
+    assert read.emissive == (4.0, 2.0, 0.0)
+    assert np.array_equal(read.emissive_texture, spots)
+    # With other coordinates than the colour, it counts with its mean.
+    material["pbrMetallicRoughness"] = {"baseColorTexture": {"index": 0, "texCoord": 1}}
+    dark = encoded(np.zeros((2, 2, 3), np.uint8))
+    with pytest.warns(CharacterWarning, match="different coordinates"):
+        read = load(tmp_path, dressed(material, dark)).material
+    assert (read.emissive, read.emissive_texture) == ((0.0, 0.0, 0.0), None)
+
+
+def test_occlusion_is_read_with_its_strength(tmp_path):
+    shares = pixels(3)
+    material = {"occlusionTexture": {"index": 0, "strength": 0.4}}
+    read = load(tmp_path, dressed(material, encoded(shares))).material
+    assert np.array_equal(read.occlusion_texture, shares)
+    assert read.occlusion_strength == 0.4
 
 
 def test_unlit_materials_are_rough_and_blended_ones_get_a_cutoff(tmp_path):
@@ -200,6 +216,9 @@ def test_a_material_survives_saving_and_loading(tmp_path, walker):
         normal_texture=pixels(3),
         normal_scale=0.5,
         emissive=(3.0, 0.75, 0.0),
+        emissive_texture=pixels(3)[::-1],
+        occlusion_texture=pixels(3),
+        occlusion_strength=0.5,
         alpha_cutoff=0.25,
         double_sided=True,
     )
@@ -210,5 +229,5 @@ def test_a_material_survives_saving_and_loading(tmp_path, walker):
     for field, value in vars(material).items():
         assert np.array_equal(getattr(again, field), value), field
     data = (tmp_path / "m.glb").read_bytes()
-    assert data.count(b"\x89PNG") == 3  # each picture once, though two meshes wear it
+    assert data.count(b"\x89PNG") == 5  # each picture once, though two meshes wear it
     assert struct.unpack_from("<I", data, 8)[0] == len(data)

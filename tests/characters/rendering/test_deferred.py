@@ -28,6 +28,8 @@ def with_material(pawn, **changes):
     return replace(pawn, meshes=(replace(mesh, material=replace(mesh.material, **changes)),))
 
 
+SPOTS = np.random.default_rng(5).integers(0, 256, (8, 8, 3), np.uint8)
+
 TOON = ToonShading((0.3, 0.05, 0.1), shift=0.1, toony=0.6, evenness=0.5)
 
 
@@ -38,8 +40,9 @@ TOON = ToonShading((0.3, 0.05, 0.1), shift=0.1, toony=0.6, evenness=0.5)
         {"metallic": 0.8, "roughness": 0.25},
         {"emissive": (0.0, 0.3, 0.1)},
         {"toon": TOON},
+        {"emissive": (0.6, 0.3, 0.1), "emissive_texture": SPOTS, "occlusion_texture": SPOTS},
     ],
-    ids=["plain", "metal", "glow", "toon"],
+    ids=["plain", "metal", "glow", "toon", "maps"],
 )
 def test_lit_later_the_picture_is_the_same(stage, deferred, view, pawn, cube, changes):
     actors = [
@@ -92,5 +95,5 @@ def test_each_surface_has_its_record(deferred, view, pawn):
         ],
     )
     toon, plain = surface_records(watch.frame.characters)
-    assert np.allclose(toon, np.array([[1, 0.1, 0.6, 0.5], [0, 0, 0, 0.12], [0, 0, 0, 0]]))
-    assert np.allclose(plain, np.array([[0, 0, 0, 0], [0, 0, 0, 0.2], [0.4, 0, 0, 0]]))
+    assert np.allclose(toon, np.array([[1, 0.1, 0.6, 0.5], [0, 0.12, 0, 0]]))
+    assert np.allclose(plain, np.array([[0, 0, 0, 0], [0.4, 0.2, 0, 0]]))

@@ -7,7 +7,7 @@ import pytest
 
 from cubeling.characters.model.mesh import Material, Mesh, ToonShading
 from cubeling.characters.rendering import SceneCharacter
-from cubeling.characters.rendering.camera_picture.light import TO_LIGHT
+from cubeling.characters.rendering.camera_picture.light import TO_LIGHT, Light, LightEstimator
 from cubeling.characters.rendering.geometry.surfaces import surface_features
 from cubeling.characters.rendering.geometry.vertices import CharacterVertices
 
@@ -64,6 +64,27 @@ def test_maps_of_roughness_and_metalness_multiply_the_factors(shown, tile):
     )
     assert np.abs(shown(tile(mapped)) - factors).max() <= 1
     assert np.abs(shown(tile(RED)) - factors).max() > 10
+
+
+def test_a_map_of_emission_multiplies_it(shown, tile):
+    glow = shown(tile(replace(RED, emissive=(0.2, 0.2, 0.05))))
+    mapped = replace(RED, emissive=(0.8, 0.4, 0.1), emissive_texture=even(137, 188, 188))
+    assert np.abs(shown(tile(mapped)) - glow).max() <= 1
+    assert np.abs(shown(tile(RED)) - glow).max() > 10
+    dark = replace(RED, emissive=(0.8, 0.4, 0.1), emissive_texture=even(0, 0, 0))
+    assert np.array_equal(shown(tile(dark)), shown(tile(RED)))
+
+
+def test_a_map_of_occlusion_takes_light_from_all_around_alone(shown, tile, monkeypatch):
+    plain, none = shown(tile(RED)), even(255, 0, 0)
+    assert np.array_equal(shown(tile(replace(RED, occlusion_texture=none))), plain)
+    closed = replace(RED, occlusion_texture=even(0, 0, 0))
+    half = shown(tile(replace(closed, occlusion_strength=0.5)))
+    assert (shown(tile(closed)).sum(), half.sum()) < (half.sum(), plain.sum())
+    assert np.array_equal(shown(tile(replace(closed, occlusion_strength=0.0))), plain)
+    light = Light(np.ones(3), np.zeros(3), np.zeros(3), TO_LIGHT)
+    monkeypatch.setattr(LightEstimator, "update", lambda *given: light)
+    assert np.array_equal(shown(tile(closed)), shown(tile(RED)))
 
 
 MAPPINGS = {

@@ -41,14 +41,14 @@ class DeferredLightingPass(RenderPass):
         features += ["SCATTERED"] * scattering
         self._triangles: dict[tuple[str, ...], moderngl.VertexArray] = {}
         self._make = partial(buffer_triangle, context, programs, "deferred_lighting", *features)
-        self._records = context.texture((3, MAX_SURFACES), 4, dtype="f4")
+        self._records = context.texture((2, MAX_SURFACES), 4, dtype="f4")
         self._records.filter = moderngl.NEAREST, moderngl.NEAREST
         self.owned = (self._records,)
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Light every texel that the geometry pass has covered."""
         records = surface_records(frame.characters)[:MAX_SURFACES].astype("f4")
-        self._records.write(np.ascontiguousarray(records), viewport=(0, 0, 3, len(records)))
+        self._records.write(np.ascontiguousarray(records), viewport=(0, 0, 2, len(records)))
         light, rotation, room = frame.light, frame.camera_from_table[:3, :3], frame.room
         lit: tuple[str, ...] = ()
         if room is not None:
