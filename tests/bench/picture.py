@@ -7,10 +7,12 @@ after each part, which adds a little. CPU time is of all threads: software rende
 
 import argparse
 import statistics
+import sys
 import time
 from collections import defaultdict
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import cv2
@@ -117,14 +119,21 @@ def instrument(context: moderngl.Context, spent: dict[str, list[tuple[float, flo
         setattr(owner, method, noting(getattr(owner, method), name))
 
 
-def main() -> None:
-    """Print the table."""
+def main() -> int:
+    """Print the table and return an exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=60)
     parser.add_argument("--character", default="human")
     parser.add_argument("--sketch", action="store_true", help="with a path on the table")
+    parser.add_argument("--faces", action="store_true", help="shadows on faces against rays")
+    parser.add_argument("--rays", type=int, default=64, help="for each cell of a face")
+    parser.add_argument("--pictures", type=Path, help="where to write the faces")
     options = parser.parse_args()
     context = create_context()
+    if options.faces:
+        from tests.bench.face_shadows import print_faces
+
+        return print_faces(context, options.rays, options.pictures)
     character = Character.load(options.character)
     stage = Stage(context, SIZE)
     view, actor = scene(character)
@@ -156,7 +165,8 @@ def main() -> None:
     Console().print(table)
     stage.release()
     context.release()
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

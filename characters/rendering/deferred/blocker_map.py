@@ -10,7 +10,7 @@ from cubeling.characters.rendering.geometry.surfaces import CASTER
 from cubeling.characters.rendering.programs import set_uniforms
 from cubeling.characters.skeleton.pose import Array
 
-MAP_SIDE = 256
+MAP_SIDE = 360
 """Texels along each side of the map."""
 
 BLOCKER_UNIT = 9
@@ -25,6 +25,10 @@ NO_ENTRY = 1e9
 CHARACTER_RANGE_TEXELS = (3.0, 6.0)
 """Distances behind a surface from which on it shadows a character, and shadows it completely, in
 texels of the map: less is rounding, as the map has one distance for a whole texel."""
+
+SURFACE_RANGE_TEXELS = (0.25, 1.0)
+"""The same behind where light first comes to an opaque surface: a point is compared with the plane
+of its own triangle where the texel has its distance, so that there is little rounding."""
 
 TABLE_RANGE_TEXELS = (-4.0, -3.0)
 """The same for the table, which is in no map: soles shadow it that sink into it a little."""
@@ -89,6 +93,7 @@ class BlockerMap:
             lamp_width=lamp.width,
             nearest_blocker=lamp.nearest,
             shadow_range=[each * texel for each in range_texels],
+            surface_range=[each * texel for each in SURFACE_RANGE_TEXELS],
         )
 
     def release(self) -> None:

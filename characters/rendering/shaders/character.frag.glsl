@@ -46,7 +46,9 @@ void main() {
 #ifdef SKIN
     skin = any(notEqual(where, vec2(0.0)));
 #endif
-    blocked = vec4(mix(vec3(1e3), vec3(away), blocking), gl_FrontFacing ? entry_of(away, skin) : 1e9);
+    blocked = vec4(mix(vec3(1e3), vec3(away), blocking), 1e9);
+    // Light that glass lets through has not come to a surface.
+    if (gl_FrontFacing && blocking == vec3(1.0)) blocked.a = entry_of(away, skin);
     if (gl_FrontFacing && !two_sided) blocked.rgb = vec3(1e3);
 }
 #else

@@ -31,7 +31,8 @@ void main() {
     int surface = surface_row(n.w);
     vec4 toon = texelFetch(surfaces, ivec2(0, surface), 0);
     vec4 glow = texelFetch(glow_open, here, 0);
-    vec3 p = texelFetch(position, here, 0).xyz;
+    vec4 point = texelFetch(position, here, 0);
+    vec3 p = point.xyz;
     vec4 albedo = texelFetch(albedo_rough, here, 0);
     vec4 shade = texelFetch(shade_metal, here, 0);
 
@@ -70,7 +71,7 @@ void main() {
     vec3 visible = vec3(1.0);
     float open = glow.a;
 #ifdef VISIBILITY
-    visible = visible_at(here, p.z);
+    visible = visible_at(here, point);
 #endif
 #ifdef OCCLUDED
     open *= texelFetch(occlusion, here, 0).r;

@@ -2,14 +2,29 @@
 
 // The share of the lamp's light that reaches each cell, by colour.
 
+#define ON_SURFACE
 #include "geometry_buffer"
+#include "flat_normal"
 #include "soft_shadow"
 
-out vec4 visible;
+uniform float tile_m;           // size of a tile of cells, whose samples differ [m]
+
+out vec4 visible;               // and how much of a tile the penumbra is wide, at most 1
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    visible = vec4(1.0);
-    if (is_seen(texelFetch(normal_id, here, 0).w))
-        visible.rgb = key_left(texelFetch(position, here, 0).xyz, here);
+    visible = vec4(1.0, 1.0, 1.0, 0.0);
+    if (!is_seen(texelFetch(normal_id, here, 0).w)) return;
+    vec4 point = texelFetch(position, here, 0);
+    vec3 seen = (lamp_from_point * vec4(point.xyz, 1.0)).xyz;
+    vec3 normal = mat3(lamp_from_point) * normal_of_number(point.w);
+    float facing = dot(normal, seen);
+    // What looks away from the lamp is shadowed by itself: only others count, whose shadows begin the further behind
+    // them the steeper it is.
+    bool away = facing >= 0.0;
+    vec3 plane = away ? vec3(0.0) : normal / facing;
+    float begin = away ? shadow_range.x / max(facing / length(seen), 0.05) : shadow_range.x;
+    float width;
+    visible.rgb = key_left(Receiver(seen.xy / seen.z, seen.z - begin, plane), here, width);
+    visible.a = min(width / tile_m, 1.0);
 }

@@ -13,5 +13,8 @@ out vec4 left;
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     vec2 table = area.xy + area.z * gl_FragCoord.xy / side;
-    left = vec4(key_left(vec3(table.x, 0.0, table.y), here), pow(texelFetch(openness, here, 0).r, 2.2));
+    vec3 seen = (lamp_from_point * vec4(table.x, 0.0, table.y, 1.0)).xyz;
+    Receiver receiver = Receiver(seen.xy / seen.z, seen.z - shadow_range.x);
+    float width;
+    left = vec4(key_left(receiver, here, width), pow(texelFetch(openness, here, 0).r, 2.2));
 }

@@ -15,7 +15,8 @@ from cubeling.characters.rendering.passes.deferred.soft_shadows import TABLE_SID
 from cubeling.tracking.appearance import MeasuredLight
 from tests.bench.effects import close_up
 from tests.bench.picture import SIZE, scene
-from tests.characters.rendering.shapes import Still, plate
+from tests.characters.rendering.shapes import Still, ball, plate
+from tests.characters.rendering.watch import WatchPass
 
 SOFT = Effect.SOFT_SHADOWS
 RED = (1.0, 0.0, 0.0)
@@ -139,3 +140,81 @@ def test_close_up_the_light_of_the_lamp_is_found_for_cells_nearly_as_for_each_pi
     error = np.abs(by_cell - by_pixel).max(axis=2)
     assert (shadow > 10).sum() > 2000
     assert 0.0 < error[shadow > 10].mean() < 0.1 * shadow[shadow > 10].mean()
+
+
+@pytest.fixture
+def lit_share(ctx, view):
+    """Return a function that gives the share of the lamp's light in each texel of shapes.
+
+    It is called with the direction to the lamp in the table frame, and meshes; it returns the
+    share (n,) where there is light without shadows, and the places (n, 3) in the table frame [m].
+    """
+    stage, watch = Stage(ctx, (320, 180)), WatchPass()
+
+    def share(to_light, *meshes):
+        measured = view.camera_from_table[:3, :3] @ to_light / np.linalg.norm(to_light)
+        lit = replace(view, light=MeasuredLight(measured, np.full(3, 0.7), np.full(3, 0.3), 1.0))
+        light = []
+        for effects in ({SOFT}, set()):
+            stage.quality = replace(QUALITIES["rich"], name="tested", effects=frozenset(effects))
+            stage.passes.append(watch)
+            for _ in range(120):  # the light changes to the measured one smoothly
+                stage.draw(lit, [])
+            watch.forget()
+            stage.draw(lit, [Still(meshes).posed()])
+            light.append(watch.diffuse[..., :3].sum(axis=-1))
+            place = watch.position[..., :3]
+            stage.passes.remove(watch)
+        seen = light[1] > 0.2
+        table = np.linalg.inv(view.camera_from_table)
+        return light[0][seen] / light[1][seen], place[seen] @ table[:3, :3].T + table[:3, 3]
+
+    yield share
+    stage.release()
+
+
+def test_a_shadow_begins_where_what_casts_it_comes_out_of_a_surface(lit_share):
+    """A ball is sunk into a board by more than half, as hair is into a head."""
+    board = plate(Material(), (0.0, 0.01, 0.0), 0.2)
+    ball_ = ball(Material(base_color=(0.2, 0.2, 0.2, 1.0)), (0.0, 0.0, 0.0), 0.03)
+    share, place = lit_share(np.array([-1.0, 0.8, 0.0]), board, ball_)
+    rim = np.sqrt(0.03**2 - 0.01**2)
+    on_board = np.abs(place[:, 1] - 0.01) < 1e-4
+    behind = on_board & (np.abs(place[:, 2]) < 0.004)
+    behind &= (place[:, 0] > rim + 0.001) & (place[:, 0] < rim + 0.003)
+    before = on_board & (place[:, 0] < -rim)
+    assert behind.sum() > 10
+    assert before.sum() > 100
+    assert share[behind].max() < 0.3
+    assert share[before].min() > 0.97
+
+
+def test_no_surface_shadows_itself_where_it_bends(lit_share):
+    """A ball, and two boards that meet in a hollow as wide open as the lamp is high."""
+    to_light = np.array([0.3, 1.0, 0.2]) / np.linalg.norm([0.3, 1.0, 0.2])
+    share, place = lit_share(to_light, ball(Material()))
+    facing = (place - [0.0, 0.06, 0.0]) @ to_light > 0.06 * 0.2  # all of the lamp is above it
+    assert facing.sum() > 500
+    assert share[facing].min() > 0.96
+    slope = np.deg2rad(20.0)
+    boards = []
+    for side in (-1.0, 1.0):
+        flat = plate(Material(), side=0.08)
+        turn = np.array(
+            [
+                [np.cos(side * slope), -np.sin(side * slope), 0.0],
+                [np.sin(side * slope), np.cos(side * slope), 0.0],
+                [0.0, 0.0, 1.0],
+            ]
+        )
+        at = [0.04 * side * np.cos(slope), 0.04 * np.sin(slope) + 0.01, 0.0]
+        boards.append(
+            replace(
+                flat,
+                positions=(flat.positions @ turn.T + at).astype(np.float32),
+                normals=(flat.normals @ turn.T).astype(np.float32),
+            )
+        )
+    share, place = lit_share(np.array([0.1, 1.0, 0.1]), *boards)
+    assert len(share) > 500
+    assert share[np.abs(place[:, 0]) < 0.01].min() > 0.97

@@ -21,6 +21,11 @@ class WatchPass(RenderPass):
     is drawn, and before the stage is released.
     """
 
+    def forget(self) -> None:
+        """Read the next picture anew."""
+        for name in [name for name in vars(self) if name not in ("frame", "_light", "_geometry")]:
+            delattr(self, name)
+
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Keep them."""
         self.frame = frame

@@ -15,10 +15,13 @@ from cubeling.characters.rendering.passes.render_pass import RenderPass
 from cubeling.characters.rendering.programs import ShaderPrograms, set_uniforms
 from cubeling.characters.rendering.resources import CharacterLayer, FrameResources
 
-DEPTH_TOLERANCE_M = 0.01
-"""Difference in depth at which a cell's value does not count for another [m]."""
+PLANE_TOLERANCE_CELLS = 1.5
+"""Distance from the plane of a triangle at which a cell's value does not count for it, in cells."""
 
-MIN_CELL_M = 0.5e-3
+TILE_CELLS = 4
+"""Cells along each side of the tiles whose samples differ."""
+
+MIN_CELL_M = 0.25e-3
 """Size of a cell on characters, at least, unless a pixel is larger [m]: the map of the blockers has
 texels of about a millimetre, and rounds over several of them."""
 
@@ -40,15 +43,19 @@ class DeferredVisibilityPass(RenderPass):
             for fragment in ("pixel_geometry", "pixel_visibility", "pixel_visibility_mean")
         ]
         self._pixels = GrowingBuffer(context, PixelBuffer)
+        self.found: PixelBuffer
+        """What was found for the last layer, in its first cells."""
+        self.size = 0, 0
+        """How many cells across and down."""
         self.owned = (*arrays, self._pixels)
-        set_uniforms(self._smooth.program, depth_tolerance=DEPTH_TOLERANCE_M)
 
     def draw_layer(self, frame: FrameResources, layer: CharacterLayer) -> None:
         """Find the visible light in each cell of the characters."""
-        stride = max(layer.target.fineness, int(MIN_CELL_M * layer.target.fineness / frame.pixel_m))
-        size = cell_count(layer.texels, stride)
+        fineness = layer.target.fineness
+        stride = max(fineness, int(MIN_CELL_M * fineness / frame.pixel_m))
+        self.size = size = cell_count(layer.texels, stride)
         self._cells = cell_uniforms(layer.texels, stride)
-        self._found = pixels = self._pixels.at_least(size)
+        self.found = pixels = self._pixels.at_least(size)
         self._context.enable_only(moderngl.NOTHING)
         pixels.framebuffer.use()
         pixels.framebuffer.viewport = (0, 0, *size)
@@ -58,6 +65,9 @@ class DeferredVisibilityPass(RenderPass):
         pixels.bind()
         table_from_camera = np.asarray(np.linalg.inv(frame.camera_from_table), float)
         self._blockers.set_uniforms(self._find.program, table_from_camera, CHARACTER_RANGE_TEXELS)
+        cell_m = stride * frame.pixel_m / fineness
+        self._cells["plane_tolerance"] = PLANE_TOLERANCE_CELLS * cell_m
+        set_uniforms(self._find.program, tile_m=TILE_CELLS * cell_m)
         pixels.use_visibility(0, size)
         self._find.render(moderngl.TRIANGLES, vertices=3)
         pixels.use_visibility(1, size)
@@ -67,6 +77,6 @@ class DeferredVisibilityPass(RenderPass):
 
     def set_uniforms(self, program: moderngl.Program) -> None:
         """Bind what was found, and set the uniforms of a program that asks for it."""
-        self._found.visibility[1].use(BUFFER_UNITS["visibility"])
-        self._found.position.use(BUFFER_UNITS["pixel_position"])
-        set_uniforms(program, depth_tolerance=DEPTH_TOLERANCE_M, **self._cells)
+        self.found.visibility[1].use(BUFFER_UNITS["visibility"])
+        self.found.position.use(BUFFER_UNITS["pixel_position"])
+        set_uniforms(program, **self._cells)
