@@ -155,6 +155,8 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.looks
 	$(BIN)/python -m tests.bench.wire
 	$(BIN)/python -m tests.bench.peers
+	$(BIN)/python -m tests.bench.instruments
+	$(BIN)/python -m tests.bench.vmc
 	$(BIN)/python -m tests.bench.several
 	$(BIN)/python -m tests.bench.camera
 	$(BIN)/python -m tests.bench.ahead

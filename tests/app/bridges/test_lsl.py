@@ -6,6 +6,7 @@ its own clock as LabRecorder and pyxdf do.
 
 import time
 import uuid
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -186,3 +187,9 @@ def test_a_marker_stream_that_is_not_there_yet_is_looked_for(lsl):
         for _ in range(20):
             assert taken.follow(None, (), 0.0).marks == ()
         assert time.monotonic() - began < 1.0
+
+
+def test_the_guide_names_every_stream(lsl):
+    guide = (Path(__file__).parents[3] / "docs" / "instruments.md").read_text("utf-8")
+    for stream in (*lsl.bridge.NUMBERS, *lsl.bridge.TEXTS):
+        assert f"`Cubeling {stream}`" in guide

@@ -3,6 +3,7 @@
 import socket
 import struct
 from collections import Counter
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,7 +15,7 @@ from pythonosc.osc_packet import OscPacket
 
 from cubeling.affect import Emotion
 from cubeling.app.bridges.addresses import UdpAddress
-from cubeling.app.bridges.osc import MAX_ACTS_AT_ONCE, OscIn, OscOut, messages_of
+from cubeling.app.bridges.osc import MAX_ACTS_AT_ONCE, TAKEN, OscIn, OscOut, messages_of
 from cubeling.app.bridges.osc_socket import (
     DROP_AT_ONCE,
     MAX_BUNDLE_BYTES,
@@ -30,7 +31,7 @@ from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions, session_info
-from cubeling.app.session.encoding import MESSAGE_TYPES
+from cubeling.app.session.encoding import CHANNEL_TYPES, MESSAGE_TYPES
 from cubeling.app.workshop.exporting import EXPORT_TABLES
 from tests.app import session_parts
 from tests.app.scripted import play_script
@@ -327,3 +328,11 @@ def test_a_session_that_osc_drove_replays_without_it_and_without_a_difference(
     assert said[0] == "OSC drops messages that could not be read"
     assert said[-1] == "OSC dropped 51 messages that could not be read"
     assert session_parts.check(path, session_info(path).options).identical
+
+
+def test_the_guide_names_every_address_and_channel():
+    guide = (Path(__file__).parents[3] / "docs" / "instruments.md").read_text("utf-8")
+    for name in TAKEN:
+        assert f"`/cubeling/in/{name}`" in guide
+    for topic in CHANNEL_TYPES:
+        assert f"`/cubeling{topic}/" in guide
