@@ -165,14 +165,14 @@ def _type(inputs: Inputs, who: str, given: Arguments) -> Inputs:
     return replace(inputs, typed=" ".join(filter(None, (inputs.typed, text[:MAX_TYPED_CHARS]))))
 
 
-def _press(name: str) -> Callable[[Inputs, str, Arguments], Inputs]:
+def _press(pressed: Callable[[Inputs], Inputs]) -> Callable[[Inputs, str, Arguments], Inputs]:
     """Return what does as a key of the player; a button that sends 0 is let go."""
 
     def press(inputs: Inputs, who: str, given: Arguments) -> Inputs:
         if who or len(given) > 1:
             raise ValueError
         down = not given or bool(_number(given[0]))
-        return replace(inputs, **{name: True}) if down else inputs
+        return pressed(inputs) if down else inputs
 
     return press
 
@@ -196,9 +196,9 @@ TAKEN: dict[str, Callable[[Inputs, str, Arguments], Inputs]] = {
     "emotion": _feel,
     "mark": _mark,
     "type": _type,
-    "hush": _press("hush"),
-    "clear": _press("clear"),
-    "inside": _press("inside"),
+    "hush": _press(lambda inputs: replace(inputs, hush=True)),
+    "clear": _press(lambda inputs: replace(inputs, clear=True)),
+    "inside": _press(lambda inputs: replace(inputs, inside=True)),
 }
 """What is taken, by the part of the address after `IN`: a new one is registered here."""
 

@@ -164,6 +164,8 @@ def _encoded(message: OscMessage) -> bytes:
             builder.add_arg(int(value), "i")
         elif isinstance(value, float):
             builder.add_arg(value, "f")
+        elif isinstance(value, str):  # a name that comes from a file's need not be UTF-8
+            builder.add_arg(value.encode(errors="replace").decode(), "s")
         else:
             builder.add_arg(value)
     return bytes(builder.build().dgram)

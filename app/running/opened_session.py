@@ -137,7 +137,7 @@ class OpenedSession:
 
     _marked_at: float = 0.0
 
-    refused: set[str] = field(default_factory=set)
+    refused: list[str] = field(default_factory=list)
     """Why acts that instruments asked for were not carried out, each once."""
 
     def admit(self, inputs: Inputs) -> Inputs:
@@ -150,7 +150,7 @@ class OpenedSession:
             if not reason:
                 admitted.append(act)
             elif reason not in self.refused and len(self.refused) < MAX_REFUSALS:
-                self.refused.add(reason)
+                self.refused.append(reason)
                 self.screen.notify(reason)
         return replace(inputs, acts=tuple(admitted))
 

@@ -144,8 +144,8 @@ def open_session(
         character = standing_as(character, options.idle)
     controller = choose_controller(options.controller, character, options.motions)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
-    for each in instruments:
-        each.begin((character, *others))
+    for instrument in instruments:
+        instrument.begin((character, *others))
     with ExitStack() as closing:
         if source is None:
             source = closing.enter_context(open_source(options.source))

@@ -91,6 +91,7 @@ class _Runner:
         self._times = session.monitor.times
         self._start: float | None = None
         self._shown_at = 0.0
+        self._told = 0  # of why acts were refused
         self._freezes = not gc.get_freeze_count()  # else somebody does who knows more
         self._frozen = False
 
@@ -169,6 +170,9 @@ class _Runner:
                 step = loop.step(frame, drawn=drawn)
             self._shown_at = time.monotonic() if drawn else self._shown_at
             self._gaps.watch_robot(loop.robot, frame.timestamp)
+            for reason in session.refused[self._told :]:
+                self._say(reason)
+            self._told = len(session.refused)
             if session.check_recording():
                 self._say(session.recording_problem)
         exchanged = session.playground.scenario is not scenario

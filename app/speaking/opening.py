@@ -57,13 +57,15 @@ def open_speaker(
         languages_in,
         read_lines_for,
     )
-    from cubeling.app.speaking.speaker import LiveSpeaker
+    from cubeling.app.speaking.speaker import LinesOf, LiveSpeaker
     from cubeling.app.speaking.voices import open_voice
     from cubeling.characters.speech import VoiceError
 
     first = options.language or DEFAULT_LANGUAGE
+    lines_of: LinesOf
+    languages: tuple[str, ...]
     if not (replies or chatty):  # nothing but what is prompted
-        lines_of, languages = lambda scenario, language: None, ()
+        lines_of, languages = _no_lines, ()
     elif options.lines is None:
         lines_of, languages = lru_cache(bundled_lines), bundled_languages(options.scenario)
         if options.language is None and languages and first not in languages:
@@ -89,3 +91,7 @@ def open_speaker(
     )
     speaker.problem = problem
     return speaker
+
+
+def _no_lines(scenario: str, language: str) -> None:
+    """Return the lines of a scenario that is silent."""

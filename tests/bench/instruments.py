@@ -66,6 +66,7 @@ def play(
     `ready` is called before the steps that are measured, and `got` gets whether acts came in.
     """
     with open_source("synthetic:companion?size=640x360") as source:
+        assert source.intrinsics is not None, "what is drawn has a lens"
         playground = Playground("companion", source.intrinsics, character=Character.load(character))
         cast = [member.character for member in playground.cast.members]
         for each in instruments:

@@ -111,6 +111,11 @@ class GivenInstruments:
     network: Mapping[str, Any]
     """The values of `NETWORK`."""
 
+    @property
+    def asked(self) -> bool:
+        """Whether any is asked for."""
+        return self.options != InstrumentOptions() or self.network["mqtt"] is not None
+
     @contextmanager
     def open(
         self, plan: WizardPlan | None = None, pages: LocalPages | None = None

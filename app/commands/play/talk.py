@@ -127,6 +127,8 @@ def talk(
     options, kept = preferences.open(options)
     check_inputs(options)
     if only_text or not (written or has_display()):
+        if instruments.asked:
+            raise AppError("a talk in the terminal has nothing that other programs could follow")
         from cubeling.app.commands.play.terminal_talk import talk_in_terminal
 
         talk_in_terminal(find_scenario(script), _lines(typed), options.talk_language)

@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from cubeling.app.bridges.opening import configure_lsl, lsl_problem
+from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
@@ -57,7 +58,7 @@ def streams(lsl):
 
 @pytest.fixture(scope="module")
 def steps():
-    found = []
+    found: list[Step] = []
     play_script("companion", progress=found.append, seconds=2.0)
     return found
 
@@ -75,7 +76,7 @@ def pull(inlet, count):
 def channels(inlet):
     """Return label and unit of each channel, as XDF's metadata have them."""
     channel = inlet.info(timeout=WAIT_S).desc().child("channels").child("channel")
-    found = []
+    found: list[tuple[str, str]] = []
     while not channel.empty():
         found.append((channel.child_value("label"), channel.child_value("unit")))
         channel = channel.next_sibling("channel")
@@ -148,11 +149,12 @@ def test_a_recorder_lines_up_with_the_session_and_its_markers_are_marks(
         lsl.pylsl.StreamInfo(name, "Markers", 1, 0, lsl.pylsl.cf_string, name)
     )
     inlet, marks = streams.record("cube"), streams.record("marks")
-    path, said = tmp_path / "r.mcap", []
+    path = tmp_path / "r.mcap"
+    said: list[str] = []
     options = SessionOptions(
         scenario="companion", source=str(short_session), record=path, pictures=False
     )
-    pressed = []
+    pressed: list[float] = []
 
     def press(step):
         if outlet.have_consumers() and not pressed:

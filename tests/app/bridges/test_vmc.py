@@ -5,6 +5,7 @@ import socket
 import subprocess
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,6 +47,11 @@ def human():
     return Character.load("human")
 
 
+def step_of(posed: PosedCharacter) -> Any:
+    """Return what is read of a step."""
+    return SimpleNamespace(posed=posed)
+
+
 def posed(character, pose, place=None):
     table = np.eye(4) if place is None else place
     return PosedCharacter(pose, table, True, "wave", 0.0, 0.0, 0.0, 0.0)
@@ -71,7 +77,7 @@ def test_a_wave_puts_the_wrists_where_our_own_retargeting_does(human, model):
             out.begin([human])
             apart = []
             for frame in range(0, len(clip), 3):
-                out.follow(SimpleNamespace(posed=posed(human, clip.poses[frame])), [human], 0.0)
+                out.follow(step_of(posed(human, clip.poses[frame])), [human], 0.0)
                 receiver = VmcReceiver()
                 while True:
                     try:
@@ -168,7 +174,7 @@ def test_another_character_in_play_is_followed_if_it_can_be(human):
     with VmcOut(UdpAddress("127.0.0.1", 9)) as out:
         out.begin([human])
         for who in (vleo, human):
-            out.follow(SimpleNamespace(posed=posed(who, who.skeleton.rest)), [who], 0.0)
+            out.follow(step_of(posed(who, who.skeleton.rest)), [who], 0.0)
 
 
 @pytest.mark.parametrize(

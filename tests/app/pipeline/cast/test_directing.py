@@ -8,7 +8,8 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.acts import ACTION_S, MAX_SAID_CHARS, Act
-from cubeling.characters import Character
+from cubeling.app.session.encoding import decode, encode
+from cubeling.characters import Character, CharacterCommand
 from cubeling.tracking import CubeModel, Frame
 from tests.bench.keep_clear import drive
 
@@ -117,3 +118,28 @@ def test_what_nobody_can_do_is_refused_in_one_line(take, act, words):
 )  # fmt: skip
 def test_what_can_be_done_is_not_refused(take, act):
     assert Playground("follow", take.intrinsics).cast.refusal(act) == ""
+
+
+@pytest.mark.slow(reason="two seconds of a person are animated")
+def test_after_a_checkpoint_acts_go_on_as_they_did(take):
+    """So a player may go back in a recording in which somebody was directed."""
+    playground = Playground("follow", take.intrinsics)
+    acts = Inputs(acts=(Act("gesture", "nod"), Act("emotion", emotion=ANGER), Act("say", "Hi.")))
+
+    def play(first, last):
+        found = []
+        for index, state in enumerate(take.states[first:last], first):
+            frame = Frame(BLACK, state.timestamp, index)
+            asked = acts if index == 4 else Inputs()
+            found.append(playground.step(frame, asked, ReplayInputs(state=state), drawn=False))
+        return found
+
+    play(0, 8)
+    checkpoint = playground.checkpoint()
+    once = play(8, 30)
+    playground.restore(checkpoint)
+    for before, after in zip(once, play(8, 30), strict=True):
+        assert encode(before.command) == encode(after.command)
+        assert encode(before.posed) == encode(after.posed)
+    assert any(step.command.behaviour is not None for step in once)
+    assert decode(CharacterCommand, encode(once[0].command)).emotion == ANGER
