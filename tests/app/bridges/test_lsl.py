@@ -158,7 +158,7 @@ def test_a_recorder_lines_up_with_the_session_and_its_markers_are_marks(
 
     def press(step):
         if outlet.have_consumers() and not pressed:
-            pressed.append(lsl.pylsl.local_clock())
+            pressed.append(step.frame.timestamp)
             outlet.push_sample(["start: now"])
 
     with lsl.bridge.LslIn(name, said.append) as taken:
@@ -176,11 +176,11 @@ def test_a_recorder_lines_up_with_the_session_and_its_markers_are_marks(
     frame = times[1] - times[0]
     offset = stamps[0] - times[0]
     assert max(abs(b - a - offset) for a, b in zip(times, stamps, strict=True)) < frame
-    assert mark.at_s + times[0] + offset == pytest.approx(pressed[0], abs=3 * frame)
+    assert mark.at_s + times[0] > pressed[0], "in a frame after the press"
     (_, _), (sample, stamp) = pull(marks, 2)
     assert sample == ["mark 1: start: now"]
-    # LSL estimates the clock of each stream anew: on a busy computer, to a millisecond.
-    assert stamp == pytest.approx(mark.at_s + times[0] + offset, abs=2e-3)
+    # LSL estimates the clock of each stream anew: on a busy computer, to some milliseconds.
+    assert stamp == pytest.approx(mark.at_s + times[0] + offset, abs=frame)
 
 
 def test_a_marker_stream_that_is_not_there_yet_is_looked_for(lsl):
