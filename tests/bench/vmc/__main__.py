@@ -15,8 +15,9 @@ import json
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import SimpleNamespace
@@ -46,13 +47,34 @@ FRAMES = 12
 LIMIT_M = 0.02
 """How far a wrist may be from where our own retargeting puts it [m]."""
 
-MODELS: dict[str, tuple[str, Callable[[Character], Skeleton]]] = {
-    "VRM 0, the same body": ("0.0", normalised_model),
-    "VRM 0, long arms, short legs": ("0.0", lambda who: normalised_model(who, 1.4, 0.7)),
-    "VRM 1.0, the same body": ("1.0", normalised_model),
-    "VRM 1.0, axes of its own": ("1.0", lambda who: raw_model(who, 0.8, 1.2)),
+Model = tuple[Skeleton, Anatomy]
+
+
+def make_model(
+    version: str, make: Callable[[Character], Skeleton], who: Character, path: Path
+) -> Model:
+    """Write a model made of a character to a file, and return it."""
+    skeleton = make(who)
+    write_vrm(skeleton, path, version)
+    return skeleton, Anatomy("humanoid", {name: n for n, name in enumerate(skeleton.names)})
+
+
+def load_model(given: Path, who: Character, path: Path) -> Model:
+    """Copy somebody's model to a file, and return it."""
+    shutil.copyfile(given, path)
+    model = Character.load(given)
+    return model.skeleton, model.anatomy
+
+
+MODELS: dict[str, Callable[[Character, Path], Model]] = {
+    "VRM 0, the same body": partial(make_model, "0.0", normalised_model),
+    "VRM 0, long arms, short legs": partial(
+        make_model, "0.0", partial(normalised_model, arms=1.4, legs=0.7)
+    ),
+    "VRM 1.0, the same body": partial(make_model, "1.0", normalised_model),
+    "VRM 1.0, axes of its own": partial(make_model, "1.0", partial(raw_model, arms=0.8, legs=1.2)),
 }
-"""The models, with their version of VRM."""
+"""What makes each model."""
 
 
 def missing() -> str:
@@ -93,10 +115,19 @@ def relay(models: Path) -> Iterator[dict[str, int]]:
 
 
 async def distances(
-    tab: Tab, out: VmcOut, who: Character, clip: Clip, skeleton: Skeleton, turned: bool
+    tab: Tab,
+    out: VmcOut,
+    who: Character,
+    clip: Clip,
+    skeleton: Skeleton,
+    anatomy: Anatomy,
+    *,
+    turned: bool,
 ) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return how far the wrists are from where ours are, (frames, 2) [m]."""
-    anatomy = Anatomy("humanoid", {name: joint for joint, name in enumerate(skeleton.names)})
+    """Return how far the wrists are from where ours are, (frames, 2) [m].
+
+    `turned` says that the model looks along −z there, and along +z here.
+    """
     ours = retarget(clip, who.skeleton, who.anatomy, skeleton, anatomy)
     axes = np.array([-1.0, 1.0, -1.0]) if turned else np.ones(3)
     found = []
@@ -118,9 +149,10 @@ async def distances(
     return np.array(found)
 
 
-async def measure() -> dict[str, dict[str, float]]:
-    """Return the largest distance of a wrist by model and clip [m]."""
+async def measure(files: Sequence[Path] = ()) -> dict[str, dict[str, float]]:
+    """Return the largest distance of a wrist by model and clip [m]; `files` are further models."""
     who = Character.load("human")
+    given = {path.name: partial(load_model, path) for path in files}
     results: dict[str, dict[str, float]] = {}
     with TemporaryDirectory() as folder, relay(Path(folder)) as ports:
         async with chromium() as browser:
@@ -129,14 +161,13 @@ async def measure() -> dict[str, dict[str, float]]:
             await tab.until("window.ready")
             with VmcOut(UdpAddress("127.0.0.1", ports["osc"])) as out:
                 out.begin([who])
-                for number, (name, (version, make)) in enumerate(MODELS.items()):
-                    skeleton = make(who)
-                    write_vrm(skeleton, Path(folder) / f"{number}.vrm", version)
-                    assert await tab.run(f"load('/models/{number}.vrm')") == version[0]
+                for number, (name, make) in enumerate({**MODELS, **given}.items()):
+                    skeleton, anatomy = make(who, Path(folder) / f"{number}.vrm")
+                    turned = await tab.run(f"load('/models/{number}.vrm')") == "0"
                     results[name] = {}
                     for clip in CLIPS:
                         apart = await distances(
-                            tab, out, who, who.clips[clip], skeleton, version == "0.0"
+                            tab, out, who, who.clips[clip], skeleton, anatomy, turned=turned
                         )
                         results[name][clip] = float(apart.max())
     return results
@@ -144,13 +175,15 @@ async def measure() -> dict[str, dict[str, float]]:
 
 def main() -> int:
     """Print the table; return 1 if a wrist is too far from ours."""
-    argparse.ArgumentParser(description=__doc__).parse_args()
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("models", nargs="*", type=Path, help="further models, .vrm files")
+    files = parser.parse_args().models
     console = Console()
     if absent := missing():
         console.print(f"nothing is measured: there is no {absent} here")
         return 0
     install()
-    results = asyncio.run(measure())
+    results = asyncio.run(measure(files))
     table = Table("model in three-vrm", *(f"{clip}, wrists off by" for clip in CLIPS))
     for name, by_clip in results.items():
         table.add_row(name, *(f"{1000 * value:.1f} mm" for value in by_clip.values()))
