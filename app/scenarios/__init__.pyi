@@ -15,6 +15,7 @@ from cubeling.app.pipeline.scenario import (
     Scenario as Scenario,
     ScenarioSettings as ScenarioSettings,
 )
+from cubeling.app.pipeline.table.acts import Act as Act
 from cubeling.app.pipeline.table.situation import Situation as Situation
 from cubeling.app.scenarios.companion import Companion as Companion
 from cubeling.app.scenarios.follow import Follow as Follow
