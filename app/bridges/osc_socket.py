@@ -140,9 +140,9 @@ class OscReceiver(Closeable):
     def _read(self) -> bytes | None:
         """Return the next datagram; None if none waits."""
         try:
-            data, ancillary, _, _ = self._socket.recvmsg(
-                MAX_DATAGRAM_BYTES + 1, 64 if self._counts_lost else 0
-            )
+            if not self._counts_lost:  # Windows has no `recvmsg`
+                return self._socket.recv(MAX_DATAGRAM_BYTES + 1)
+            data, ancillary, _, _ = self._socket.recvmsg(MAX_DATAGRAM_BYTES + 1, 64)
         except OSError:  # none waits, or the network is down
             return None
         for level, kind, value in ancillary:

@@ -260,6 +260,14 @@ def test_a_flood_costs_a_frame_no_more_than_some_datagrams(desk):
     assert desk.said == ["OSC drops messages that came faster than frames"]
 
 
+def test_where_the_system_does_not_count_what_it_drops_all_else_is_the_same(desk):
+    desk.taken._receiver._counts_lost = False
+    desk.send(b"rubbish")
+    desk.send(message("/cubeling/in/action", "kiss"))
+    assert desk.ask().acts == (Act("action", "kiss"),)
+    assert desk.taken.counts["could not be read"] == 1
+
+
 def test_many_messages_in_few_datagrams_are_not_all_read(desk):
     bundle = OscBundleBuilder(1)
     builder = OscMessageBuilder("/a")
