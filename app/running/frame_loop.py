@@ -1,5 +1,7 @@
 """Processing the frames of a session: each is tracked, drawn, shown and recorded."""
 
+from dataclasses import replace
+
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import ReplayInputs, RobotView, Step
 from cubeling.app.running.events import events_of
@@ -107,7 +109,7 @@ class FrameLoop:
     @property
     def asked_by_player(self) -> bool:
         """Whether the player asked something of the scenario in the frame that was shown last."""
-        return self._inputs != Inputs()
+        return replace(self._inputs, marks=()) != Inputs()
 
     def _show(self, step: Step, inputs: Inputs, drawn: bool = True) -> None:
         session, lap = self._session, self._session.monitor.times.lap

@@ -141,11 +141,15 @@ class OpenedSession:
     """Why acts that instruments asked for were not carried out, each once."""
 
     def admit(self, inputs: Inputs) -> Inputs:
-        """Return inputs without the acts that the cast cannot do; say once for each why."""
+        """Return inputs without the acts that the cast cannot do, or of which a later one comes.
+
+        Why something cannot be done is in `refused`, each reason once.
+        """
         if not inputs.acts:
             return inputs
         admitted = []
-        for act in inputs.acts:
+        latest = {(act.kind, act.who): act for act in inputs.acts}
+        for act in latest.values():
             reason = self.playground.cast.refusal(act)
             if not reason:
                 admitted.append(act)

@@ -319,7 +319,11 @@ def test_a_session_that_osc_drove_replays_without_it_and_without_a_difference(
     monkeypatch.setattr(opening, "_pace", lambda *_: None)  # a frame waits for what is said in it
     plan = {
         3: [message("/cubeling/in/action", "shout", 1.0)],
-        8: [message("/cubeling/in/gesture", "nod"), message("/cubeling/in/mark", "go")],
+        8: [
+            message("/cubeling/in/gesture", "shake"),
+            message("/cubeling/in/gesture", "nod"),
+            message("/cubeling/in/mark", "go"),
+        ],
         12: [message("/cubeling/in/emotion", "angry"), message("/cubeling/in/say", "Go away.")],
         16: [message("/cubeling/in/action", "fly"), b"rubbish"],
         20: [np.random.default_rng(seed).bytes(64) for seed in range(50)],
@@ -338,10 +342,11 @@ def test_a_session_that_osc_drove_replays_without_it_and_without_a_difference(
         assert session.refused == [refused]
         assert said.count(refused) == 1
     with SessionFile(path) as file:
-        acts = [act.kind for each in file.inputs.values() for act in each.acts]
+        acts = [(act.kind, act.text) for each in file.inputs.values() for act in each.acts]
         assert [mark.name for mark in file.marks] == ["go"]
         spoken = [line[""].utterance.text for line in file.lines.values()]
-    assert acts == ["action", "gesture", "emotion", "say"]
+    # Of two gestures in a frame, the later one is made.
+    assert acts == [("action", "shout"), ("gesture", "nod"), ("emotion", ""), ("say", "Go away.")]
     assert spoken == ["Go away."]
     assert "OSC drops messages that could not be read" in said
     assert said[-1] == "OSC dropped 51 messages that could not be read"
