@@ -66,7 +66,8 @@ def load_model(given: Path, who: Character, path: Path) -> Model:
     return model.skeleton, model.anatomy
 
 
-MODELS: dict[str, Callable[[Character, Path], Model]] = {
+MakeModel = Callable[[Character, Path], Model]
+MODELS: dict[str, MakeModel] = {
     "VRM 0, the same body": partial(make_model, "0.0", normalised_model),
     "VRM 0, long arms, short legs": partial(
         make_model, "0.0", partial(normalised_model, arms=1.4, legs=0.7)
@@ -152,7 +153,8 @@ async def distances(
 async def measure(files: Sequence[Path] = ()) -> dict[str, dict[str, float]]:
     """Return the largest distance of a wrist by model and clip [m]; `files` are further models."""
     who = Character.load("human")
-    given = {path.name: partial(load_model, path) for path in files}
+    models: dict[str, MakeModel] = dict(MODELS)
+    models |= {path.name: partial(load_model, path) for path in files}
     results: dict[str, dict[str, float]] = {}
     with TemporaryDirectory() as folder, relay(Path(folder)) as ports:
         async with chromium() as browser:
@@ -161,7 +163,7 @@ async def measure(files: Sequence[Path] = ()) -> dict[str, dict[str, float]]:
             await tab.until("window.ready")
             with VmcOut(UdpAddress("127.0.0.1", ports["osc"])) as out:
                 out.begin([who])
-                for number, (name, make) in enumerate({**MODELS, **given}.items()):
+                for number, (name, make) in enumerate(models.items()):
                     skeleton, anatomy = make(who, Path(folder) / f"{number}.vrm")
                     turned = await tab.run(f"load('/models/{number}.vrm')") == "0"
                     results[name] = {}
