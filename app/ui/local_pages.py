@@ -2,8 +2,8 @@
 
 import sys
 import threading
-from collections.abc import Mapping
 from dataclasses import dataclass
+from email.message import Message
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any, Protocol
@@ -89,7 +89,7 @@ class LocalPages(Closeable):
         self._server.server_close()
         self._thread.join(timeout=5.0)
 
-    def _page_at(self, path: str, headers: Mapping[str, str]) -> tuple[LocalPage | None, str]:
+    def _page_at(self, path: str, headers: Message) -> tuple[LocalPage | None, str]:
         """Return the page of a path, and the place below it; None for who cannot know it."""
         token, _, place = path.partition("?")[0].lstrip("/").partition("/")
         # A page that is asked for by a name is that of somebody else's site (DNS rebinding).

@@ -111,7 +111,7 @@ def test_every_bundled_question_has_room_for_all_it_shows(name):
             drawn = sheet.draw(0.5, (picture, picture))
             assert drawn.shape == (SHEET_HEIGHT / 2, SHEET_WIDTH / 2, 3)
             assert sheet._field_top >= sheet._question_top + 8
-            assert sheet._field_top + sheet._field.height <= BUTTON[1]
+            assert sheet._field_top + sheet._field_height <= BUTTON[1]
             shown = np.nonzero((drawn == (0, 0, 255)).all(axis=2))[0]
             assert np.ptp(shown) > 60  # of 360
 
