@@ -125,6 +125,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.coherence
 	$(BIN)/python -m tests.bench.idle
 	$(BIN)/python -m tests.bench.idle_study
+	$(BIN)/python -m tests.bench.stimulus_onset
 	$(BIN)/python -m tests.bench.standing
 	$(BIN)/python -m tests.bench.postures
 	$(BIN)/python -m tests.bench.upper_body

@@ -105,6 +105,7 @@ OTHERWISE = {
     "affect/personality_file.py": "a file of the program",
     "app/pipeline/registry.py": "what installed packages say of themselves",
     "app/running/kept_lens.py": "what the system calls a camera",
+    "app/running/wizard/page.py": "files of the program",
     "app/session/recorder.py": "written as it goes, so that a kill loses nothing",
     "app/sound/bank.py": "the unfinished file of `whole_file`",
     "app/ui/panels/drawing/style.py": "a font for a library that takes no other",

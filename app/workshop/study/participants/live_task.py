@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from pathlib import Path
 
 from cubeling.app.pipeline.step import Step
@@ -10,14 +11,15 @@ from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.encoding import MESSAGE_TYPES
-from cubeling.app.workshop.study.participants.study_log import ParticipantLog
+from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
 from cubeling.app.workshop.study.protocols.goals import (
     GOAL_TOPICS,
     GoalWatch,
     TaskResult,
     result_of,
 )
-from cubeling.app.workshop.study.protocols.protocol import Settings, StudyTask
+from cubeling.app.workshop.study.protocols.plan import PlannedStep
+from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, StudyTask
 
 
 class _TaskOverError(Exception):
@@ -40,30 +42,56 @@ class TaskSetup:
     """What else follows the tasks, such as a wizard's desk."""
 
 
-def play_step(
-    task: StudyTask,
-    settings: Settings,
-    setup: TaskSetup,
-    log: ParticipantLog,
-    condition: str,
-) -> tuple[TaskResult, str]:
-    """Play a task of a participant, and return how it ended, and the name of its recording."""
-    record = free_recording(log.folder, task, condition)
-    options = SessionOptions(
-        scenario=task.scenario,
-        source=setup.source,
-        character=settings.character,
-        personality=settings.personality,
-        controller=settings.controller,
-        turns=settings.turns,
-        robot=setup.robot,
-        intrinsics=setup.intrinsics,
-        pictures=setup.pictures,
-        record=record,
-        participant=log.code,
-        condition=condition,
-    )
-    return play_task(options, task, setup.instruments), record.name
+class LiveDesk:
+    """What a terminal, a window and a page have in common as a `StudyDesk`.
+
+    Parameters
+    ----------
+    protocol
+        The study.
+    setup
+        How tasks are played.
+    folder
+        Where the stimuli are.
+    """
+
+    def __init__(self, protocol: Protocol, setup: TaskSetup, folder: Path) -> None:
+        self._protocol, self._setup, self._folder = protocol, setup, folder
+        self.onset: datetime | None = None
+        """When what the last question is about was on the screen; None where that is not known."""
+        self.now = SteadyClock()
+        """Returns the local time."""
+
+    def tell(self, title: str, text: str) -> None:
+        """Show a text until it was read."""
+        raise NotImplementedError
+
+    def give_way(self) -> None:
+        """Prepare for a task, which has a window of its own."""
+
+    def play(
+        self, step: PlannedStep, task: StudyTask, settings: Settings, log: ParticipantLog
+    ) -> tuple[TaskResult, str]:
+        """Say what the task is, let it be played, and return how it ended, and its recording."""
+        self.tell(task.name, task.text)
+        self.give_way()
+        record = free_recording(log.folder, task, step.condition)
+        setup = self._setup
+        options = SessionOptions(
+            scenario=task.scenario,
+            source=setup.source,
+            character=settings.character,
+            personality=settings.personality,
+            controller=settings.controller,
+            turns=settings.turns,
+            robot=setup.robot,
+            intrinsics=setup.intrinsics,
+            pictures=setup.pictures,
+            record=record,
+            participant=log.code,
+            condition=step.condition,
+        )
+        return play_task(options, task, setup.instruments), record.name
 
 
 def play_task(

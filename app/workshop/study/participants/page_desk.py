@@ -8,7 +8,6 @@ import queue
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 from urllib.parse import parse_qs
 
@@ -16,10 +15,7 @@ import cv2
 
 from cubeling.app.errors import AppError
 from cubeling.app.ui.local_pages import HTML, LocalPages, PageReply
-from cubeling.app.workshop.study.participants.live_task import (
-    TaskSetup,
-    play_step,
-)
+from cubeling.app.workshop.study.participants.live_task import LiveDesk, TaskSetup
 from cubeling.app.workshop.study.participants.question_page import (
     question_page,
     text_page,
@@ -32,10 +28,8 @@ from cubeling.app.workshop.study.participants.stimulus_files import (
     files_of,
     pictures_of,
 )
-from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
-from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
-from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, StudyTask
+from cubeling.app.workshop.study.protocols.protocol import Protocol
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
 
 MAX_FIELDS = 16
@@ -63,30 +57,22 @@ class ShownPage:
     """What is shown on it: files, and pictures of answers."""
 
 
-class PageDesk:
+class PageDesk(LiveDesk):
     """Asks on a page; a `StudyDesk` and a `LocalPage`.
 
     Parameters
     ----------
-    protocol
-        The study.
-    setup
-        How tasks are played.
-    folder
-        Where the stimuli are.
+    protocol, setup, folder
+        See `LiveDesk`.
     pages
         Serves the page; whoever opened it closes it.
     """
 
-    onset: datetime | None = None
-
     def __init__(
         self, protocol: Protocol, setup: TaskSetup, folder: Path, pages: LocalPages
     ) -> None:
-        self._protocol, self._setup, self._folder = protocol, setup, folder
+        super().__init__(protocol, setup, folder)
         self._shown = ShownPage(-1, waiting_page("The study begins in a moment"))
-        self.now = SteadyClock()
-        """Returns the local time."""
         self._count = 0
         self._answers: queue.Queue[tuple[int, str]] = queue.Queue()
         self.address = pages.open(self)
@@ -122,13 +108,9 @@ class PageDesk:
             except AppError as error:
                 problem = str(error)
 
-    def play(
-        self, step: PlannedStep, task: StudyTask, settings: Settings, log: ParticipantLog
-    ) -> tuple[TaskResult, str]:
-        """Say what the task is, and let it be played in a window."""
-        self.tell(task.name, task.text)
+    def give_way(self) -> None:
+        """Show on the page where the task is."""
         self._shown = ShownPage(-1, waiting_page("Look at the other window: you play now"))
-        return play_step(task, settings, self._setup, log, step.condition)
 
     def thank(self) -> None:
         """Show that all is done, for as long as a browser needs to fetch it."""

@@ -1,18 +1,15 @@
 """A participant at a terminal: questions are asked and answered in it, tasks open a window."""
 
-from datetime import datetime
+from pathlib import Path
 
 from rich.console import Console
 from rich.panel import Panel
 from rich.text import Text
 
 from cubeling.app.errors import AppError
-from cubeling.app.workshop.study.participants.live_task import (
-    TaskSetup,
-    play_step,
-)
+from cubeling.app.workshop.study.participants.live_task import LiveDesk, TaskSetup
 from cubeling.app.workshop.study.participants.stimulus_files import names_of
-from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
+from cubeling.app.workshop.study.participants.study_log import ParticipantLog
 from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
 from cubeling.app.workshop.study.protocols.protocol import (
@@ -25,18 +22,15 @@ from cubeling.app.workshop.study.protocols.protocol import (
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
 
 
-class TerminalDesk:
+class TerminalDesk(LiveDesk):
     """Asks in a terminal; a `StudyDesk`.
 
     Ctrl-D ends the study for now, as Ctrl-C does: what was answered is kept.
     """
 
-    onset: datetime | None = None
-
     def __init__(self, protocol: Protocol, setup: TaskSetup, console: Console) -> None:
-        self._protocol, self._setup, self._console = protocol, setup, console
-        self.now = SteadyClock()
-        """Returns the local time."""
+        super().__init__(protocol, setup, Path())
+        self._console = console
         self._about: tuple[str, int] | None = None
 
     def tell(self, title: str, text: str) -> None:
@@ -65,9 +59,8 @@ class TerminalDesk:
     def play(
         self, step: PlannedStep, task: StudyTask, settings: Settings, log: ParticipantLog
     ) -> tuple[TaskResult, str]:
-        """Say what the task is, and let it be played."""
-        self.tell(task.name, task.text)
-        result, recording = play_step(task, settings, self._setup, log, step.condition)
+        """Say what the task is, let it be played, and say how it ended."""
+        result, recording = super().play(step, task, settings, log)
         words = f"after {result.time_s:.1f} s" if result.time_s is not None else "not reached"
         self._console.print(Text(f"{task.goal.words}: {words}", "dim"))
         return result, recording

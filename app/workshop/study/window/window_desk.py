@@ -4,12 +4,12 @@ import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from datetime import datetime, timedelta
+from datetime import timedelta
 from pathlib import Path
 
 from cubeling.app.errors import AppError
 from cubeling.app.ui.window.surface import WindowSurface
-from cubeling.app.workshop.study.participants.live_task import TaskSetup, play_step
+from cubeling.app.workshop.study.participants.live_task import LiveDesk, TaskSetup
 from cubeling.app.workshop.study.participants.stimulus_files import (
     captions_of,
     files_of,
@@ -17,10 +17,8 @@ from cubeling.app.workshop.study.participants.stimulus_files import (
     pictures_of,
     read_picture,
 )
-from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
-from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
-from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, StudyTask
+from cubeling.app.workshop.study.protocols.protocol import Protocol
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
 from cubeling.app.workshop.study.window.fields import SHEET_HEIGHT, SHEET_WIDTH, Picture
 from cubeling.app.workshop.study.window.sheet import Sheet, empty_sheet
@@ -116,19 +114,15 @@ class QuestionWindow(WindowSurface):
             self.sheet.click(*self._pointer)
 
 
-class WindowDesk:
+class WindowDesk(LiveDesk):
     """Asks in a window; a `StudyDesk`. Close it after use; a second `close` does nothing.
 
     A window that is closed ends the study for now, as Ctrl-C does: what was answered is kept.
 
     Parameters
     ----------
-    protocol
-        The study.
-    setup
-        How tasks are played.
-    folder
-        Where the stimuli are.
+    protocol, setup, folder
+        See `LiveDesk`.
     opened
         Opens the window: anew after each task, which has a window of its own.
     """
@@ -140,12 +134,9 @@ class WindowDesk:
         folder: Path,
         opened: Callable[[], QuestionWindow] = QuestionWindow,
     ) -> None:
-        self._protocol, self._setup, self._folder = protocol, setup, folder
-        self._open, self._window = opened, opened()
-        self.now = SteadyClock()
-        """Returns the local time."""
-        self.onset: datetime | None = None
-        """When what the last question is about was on the screen; None for nothing."""
+        super().__init__(protocol, setup, folder)
+        self._open = opened
+        self._window: QuestionWindow | None = opened()
 
     def __enter__(self) -> "WindowDesk":
         return self
@@ -155,7 +146,7 @@ class WindowDesk:
 
     def close(self) -> None:
         """Close the window; a second call does nothing."""
-        self._window.close()
+        self.give_way()
 
     def tell(self, title: str, text: str) -> None:
         """Show a text until the participant goes on."""
@@ -174,15 +165,11 @@ class WindowDesk:
         self._show(sheet, files)
         return sheet.answer
 
-    def play(
-        self, step: PlannedStep, task: StudyTask, settings: Settings, log: ParticipantLog
-    ) -> tuple[TaskResult, str]:
-        """Say what the task is, and let it be played in a window of its own."""
-        self.tell(task.name, task.text)
-        self._window.close()
-        result = play_step(task, settings, self._setup, log, step.condition)
-        self._window = self._open()
-        return result
+    def give_way(self) -> None:
+        """Close the window; what is shown next opens another one."""
+        if self._window is not None:
+            self._window.close()
+            self._window = None
 
     def thank(self) -> None:
         """Show that all is done, until the participant goes on."""
@@ -190,7 +177,8 @@ class WindowDesk:
 
     def _show(self, sheet: Sheet, files: Sequence[Path] = ()) -> None:
         """Show a sheet until it is done; films begin anew at their ends."""
-        window, shown = self._window, [_Shown(file) for file in files]
+        window = self._window = self._window or self._open()
+        shown = [_Shown(file) for file in files]
         scale = window.scale
         # The onset is that of a picture that is ready: nothing is decoded while it is waited for.
         pictures = [each.picture for each in shown]
