@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.app.pipeline.scenario import EmotionTarget
-from cubeling.app.session import Mark, SessionFile, SessionInfo
+from cubeling.app.session import Mark, SessionFile, SessionInfo, WizardAct
 from cubeling.app.session.encoding import IMAGE_TOPIC
 from cubeling.app.workshop.moods import read_robot_traces
 from cubeling.characters import PosedCharacter
@@ -126,6 +126,8 @@ class SessionFigures:
     """What happened besides marks, by its name, with how often."""
 
     marks: tuple[Mark, ...] = field(default=())
+    acts: tuple[WizardAct, ...] = field(default=())
+    """What a wizard did."""
 
     @property
     def found_share(self) -> float:
@@ -159,6 +161,7 @@ def read_figures(path: Path, complete: Path, *, salvage: bool = False) -> Sessio
     """
     with SessionFile(path, salvage=salvage) as session:
         info, marks, events = session.info, session.marks, session.events
+        acts = session.wizard_acts
         frames = np.array([time for _, time, _ in session.messages(IMAGE_TOPIC)])
         channels = tuple(_channels(session))
     first = float(frames[0]) if len(frames) else 0.0
@@ -195,6 +198,7 @@ def read_figures(path: Path, complete: Path, *, salvage: bool = False) -> Sessio
         link=_link(complete),
         events=_counted(event for _, event in events if not event.startswith("mark ")),
         marks=marks,
+        acts=acts,
     )
 
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -49,9 +50,21 @@ def lines_of(figures: SessionFigures) -> list[tuple[str, str]]:
         ("link", _link_line(figures)),
         ("refused", ", ".join(link.reasons)),
         ("events", _counts(figures.events)),
+        ("wizard", _wizard_line(figures)),
         ("marks", ", ".join(f"{m.at_s:.1f} s {m.kind} {m.name}".strip() for m in figures.marks)),
     ]
     return [(word, line) for word, line in rows if line]
+
+
+def _wizard_line(figures: SessionFigures) -> str:
+    """Return how much a wizard did, how often in error, and how late."""
+    acts = figures.acts
+    if not acts:
+        return ""
+    errors = sum(each.undone for each in acts)
+    delays = [each.delay_s for each in acts if each.delay_s is not None and not each.undone]
+    late = f", {np.median(delays):.2f} s after the cue in the middle" if delays else ""
+    return f"{quantity(len(acts), 'act')}, {quantity(errors, 'error')}{late}"
 
 
 def document_of(figures: SessionFigures) -> dict[str, Any]:
@@ -101,6 +114,7 @@ def document_of(figures: SessionFigures) -> dict[str, Any]:
         },
         "events": dict(figures.events),
         "marks": [{"at_s": m.at_s, "kind": m.kind, "name": m.name} for m in figures.marks],
+        "acts": [asdict(each) for each in figures.acts],
         "channels": {
             each.topic: {
                 "messages": each.messages,
