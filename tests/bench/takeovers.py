@@ -4,9 +4,10 @@
 
 Every kind of act is played alone, from idle to its end, and then every ordered pair of kinds: the
 second begins at several moments of the first, which is given up at once, as when a person speaks,
-presses a key or lifts the cube. The largest speed of any joint beside its parent, eyes and springs
-apart, is compared with that of the faster of the two alone. Exits with 1 if a pair exceeds
-`MAX_RATIO`.
+presses a key or lifts the cube. A place to reach for is before the body wherever that stands by
+then, so that the act is the one that was played alone. The largest speed of any joint beside its
+parent, eyes and springs apart, is compared with that of the faster of the two alone. Exits with 1
+if a pair exceeds `MAX_RATIO`.
 """
 
 import argparse
@@ -85,10 +86,17 @@ class Peak:
     """When, after the act began [s]."""
 
 
-def acts_of(character: Character, animator: Animator) -> dict[str, Act]:
-    """Return every kind of act that a character can do."""
+def acts_of(
+    character: Character, animator: Animator, placed: Callable[[], NDArray[np.float64]]
+) -> dict[str, Act]:
+    """Return every kind of act that a character can do; `placed` returns where it is, (4, 4)."""
     height = character.height * animator.scale
-    place = np.array([0.15 * height, 0.6 * height, 0.35 * height])
+    place = np.array([0.15 * height, 0.6 * height, 0.35 * height]) / animator.scale
+
+    def before_it() -> NDArray[np.float64]:
+        table = placed()
+        return np.asarray(table[:3, :3] @ place + table[:3, 3])
+
     said = _said()
     acts: dict[str, Act] = {"idle": lambda begun: {}}
     for name, speed, target in (("walk", 2.0, AHEAD), ("run", 4.5, AHEAD), ("turn", 2.0, BESIDE)):
@@ -98,7 +106,7 @@ def acts_of(character: Character, animator: Animator) -> dict[str, Act]:
     for name in ("WAVE", "OPEN_ARMS", "FACEPALM"):
         acts[name] = _gesturing(name)
     acts["reach"] = lambda begun: _body(
-        reaches=(ReachIntent("it", place, Times(begun, begun + 0.6), "touch", "right"),)
+        reaches=(ReachIntent("it", before_it(), Times(begun, begun + 0.6), "touch", "right"),)
     )
     acts["crouch"] = lambda begun: _body(
         postures=(PostureIntent("it", "CROUCHING", Times(begun, begun + 0.8)),)
@@ -157,7 +165,8 @@ class Player:
 
     def __init__(self, character: Character) -> None:
         self._animator = Animator(character)
-        self.acts = acts_of(character, self._animator)
+        self._placed = np.eye(4)
+        self.acts = acts_of(character, self._animator, lambda: self._placed)
         # What swings follows the body by its own laws, and eyes leap.
         swinging = {bone.joint for bone in character.springs}
         self._joints = np.array(
@@ -195,18 +204,21 @@ class Player:
         return peak
 
     def _copy(self) -> Checkpoint:
-        return Checkpoint({"animator": self._animator, "shown": self._shown})
+        state = {"animator": self._animator, "shown": self._shown, "placed": self._placed}
+        return Checkpoint(state)
 
     def _restore(self, copy: Checkpoint) -> None:
         content = copy.content()
         self._animator, self._shown = content["animator"], content["shown"]
+        self._placed = content["placed"]
 
     def _play(self, act: Act, begun: float, start: float, end: float) -> Peak:
         frames = round((end - start) / FRAME_S)
-        shown = [] if self._shown is None else [self._shown]
+        shown, fields = [] if self._shown is None else [self._shown], act(begun)
         for frame in range(frames):
-            command = CharacterCommand(start + (frame + 1) * FRAME_S, **act(begun))
-            shown.append(self._animator.update(command).pose.rotations[self._joints])
+            posed = self._animator.update(CharacterCommand(start + (frame + 1) * FRAME_S, **fields))
+            self._placed = posed.table_from_character
+            shown.append(posed.pose.rotations[self._joints])
         self._shown = shown[-1]
         turns = np.array(shown)
         steps = rotations.multiply(rotations.conjugate(turns[:-1]), turns[1:])
