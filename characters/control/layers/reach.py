@@ -30,9 +30,9 @@ from cubeling.characters.skeleton.scalar_quaternions import Vector, add, length,
 from cubeling.characters.skeleton.way_round import WayRound
 from cubeling.characters.smoothing import low_pass
 
-LEAVE_S = 0.8
-"""How long a hand takes to go that is not asked for any more [s], times its weight, but at least
-`BLEND_S`: as long as it usually comes, and sits down."""
+LEAVE_S = 0.9
+"""How long a hand takes to go that was at its place and is not asked for any more [s]: a little
+longer than it usually comes and sits down, since the body may go elsewhere meanwhile."""
 
 BLEND_S = 0.3
 """In which time its weight goes over from one plan to another [s]."""
@@ -116,14 +116,14 @@ class ReachingHand:
             plan, lambda time: np.array([self._wanted_weight(times, time)]), now
         )
         self.weight = min(max(float(asked[0]), 0.0), 1.0)
-        if left is not None and now >= left[0] + max(LEAVE_S * left[1], BLEND_S):
+        if left is not None and now >= left[0] + _leave_s(left[1]):
             self.weight, self.intent, self._left = 0.0, None, None
             self._weights = PlannedValues(1, BLEND_S)
 
     def _wanted_weight(self, times: Times, now: float) -> float:
         if self._left is not None:
             since, weight = self._left
-            return weight * (1.0 - ease((now - since) / max(LEAVE_S * weight, BLEND_S), "gonio"))
+            return weight * (1.0 - ease((now - since) / _leave_s(weight), "gonio"))
         since, before = self._joined
         begin, ready = max(times.start, since), times.ready
         if since > times.start:  # it joins in late, or comes from another place
@@ -135,6 +135,15 @@ class ReachingHand:
         end = times.relax + RELAX_S if times.end is None else times.end
         going = (now - times.relax) / (end - times.relax) if now < end else 1.0
         return weight * (1.0 - ease(going, "gonio"))
+
+
+def _leave_s(weight: float) -> float:
+    """Return how long a hand of a weight takes to go [s].
+
+    By the root of the way, so that it accelerates no more than over the whole of it: it may still
+    be on its way there, and then its weight must first stop growing.
+    """
+    return max(LEAVE_S * math.sqrt(weight), BLEND_S)
 
 
 @dataclass

@@ -98,6 +98,7 @@ class UpperBody:
         self.arms: dict[str, Arm] = {side: arm for side, arm in found.items() if arm is not None}
         """Its arms by side: none, one or both."""
         self._four_legs = anatomy.kind == "quadruped"
+        self._rest = skeleton.rest.rotations
         self._effectors = {
             (side, kind): self._effector(arm, kind, skeleton)
             for side, arm in self.arms.items()
@@ -289,7 +290,8 @@ class UpperBody:
         if collar >= 0:
             above = frames.turns[self.kinematics.parents[collar]]
             rows.append(multiply(conjugate(above), multiply(hand.swung, frames.turns[collar])))
-        _blend(local, self._written[arm.hand.side], rows, weight, hand.target.way)
+        joints = self._written[arm.hand.side]
+        _blend(local, joints, rows, weight, hand.target.way, self._rest[joints])
         if arm.hand.fingers:
             shape = hand.target.shape or SHAPE_OF_KIND[hand.target.kind]
             posture = self.shapes.posture(arm.hand.side, shape)
@@ -362,10 +364,11 @@ def _blend(
     turns: Array | list[Quaternion],
     weight: float,
     way: WayRound | None = None,
+    rest: Array | None = None,
 ) -> None:
     """Turn joints to local rotations, or part of the way there."""
     if weight >= 1.0:
         local[joints] = turns
     else:
-        mixed = (way or WayRound()).mix(local.take(joints, 0), np.array(turns), weight)
+        mixed = (way or WayRound()).mix(local.take(joints, 0), np.array(turns), weight, rest)
         local[joints] = mixed

@@ -15,7 +15,13 @@ from cubeling.characters.control.controllers import default_height
 from cubeling.characters.control.layers import FOOT_LAYERS
 from cubeling.characters.control.layers.gaze import GazeLayer
 from cubeling.characters.control.layers.posture import PostureLayer
-from cubeling.characters.control.layers.reach import CLEARANCE, LEAVE_S, ReachLayer, surface_of
+from cubeling.characters.control.layers.reach import (
+    CLEARANCE,
+    LEAVE_S,
+    ReachingHand,
+    ReachLayer,
+    surface_of,
+)
 from cubeling.characters.control.layers.sitting_up import SittingUpLayer
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Array, Pose
@@ -86,6 +92,22 @@ def test_a_hand_arrives_in_time_stays_and_goes() -> None:
     idle = played(lambda _: [], 2.6)
     assert frames[-1].pose.rotations == pytest.approx(idle[-1].pose.rotations, abs=1e-9)
     assert largest_step_deg(frames) < 8.0
+
+
+@pytest.mark.parametrize("left_at", [0.15, 0.3, 0.45, 0.6])
+def test_a_hand_that_is_given_up_on_its_way_leaves_no_faster_than_it_came(left_at: float) -> None:
+    hand, asked, weights = ReachingHand(), intent((0.0, 0.5, 0.3), 0.0, 0.6), []
+    for frame in range(120):
+        now = frame / 60
+        if now < left_at:
+            hand.follow(asked, (0.0, 0.5, 0.3), now, 1.0)
+        else:
+            hand.leave(now)
+        hand.advance(now)
+        weights.append(hand.weight)
+    speeds = np.diff(weights)
+    assert weights[-1] == 0.0
+    assert abs(speeds).max() <= 1.01 * math.pi / 2 / 0.6 / 60, "that of the ease of 0.6 s"
 
 
 def test_a_moving_place_is_followed_within_a_centimetre() -> None:

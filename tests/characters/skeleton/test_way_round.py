@@ -54,3 +54,15 @@ def test_after_a_whole_weight_it_begins_by_the_shorter_way():
     way.mix(still, rotations.about("y", [4.0]), 1.0)
     mixed = way.mix(still, rotations.about("y", [4.0]), 0.5)
     assert turn_of(mixed, rotations.about("y", [0.5 * (4.0 - 2.0 * np.pi)])) < 0.003
+
+
+def test_a_way_that_is_hardly_the_shorter_one_goes_past_the_rest():
+    """A leg is folded as it begins to reach behind a shoulder, and straightens meanwhile."""
+    way, rest = WayRound(), rotations.about("y", [0.0])
+    shown = []
+    for u in np.linspace(0.01, 0.99, 99):
+        folded, place = np.radians(-30.0 * (1.0 - u)), np.radians(175.0 - 75.0 * u)
+        mixed = way.mix(rotations.about("y", [folded]), rotations.about("y", [place]), u, rest)
+        shown.append(float(rotations.to_rotation_vector(mixed)[0, 1]))
+    assert np.degrees(shown[-1]) == pytest.approx(100.0, abs=3.0)
+    assert np.degrees(np.ptp(shown)) < 150.0, "the other way is 285° long"
