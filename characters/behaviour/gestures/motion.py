@@ -42,7 +42,7 @@ full speed they would stop with a thud."""
 SWING_SHARE = 0.2
 """Last part of the retraction: the arms are at rest, swing a little further, and back."""
 
-JOIN_SHARE = 0.4
+JOIN_SHARE = 0.84
 """Part of the preparation in which what the arms still did before fades."""
 
 WRIST_LAG_S, FINGER_LAG_S = 0.035, 0.07
@@ -196,7 +196,11 @@ class GestureMotion:
         return lay_over(pose, self.moved, turns, weight, way)
 
     def _join(self, turns: Array, pose: Pose, now: float) -> None:
-        """Let arms go on with what they do below, at first, and take it up again at the end."""
+        """Let arms go on with what they do below, at first, and take it up again at the end.
+
+        Faded early, what they do below leaves a long way for the rest of the preparation, as where
+        they come from another gesture; faded late, they fall towards rest on their way.
+        """
         times, arms = self.times, turns[: self._count]
         below = rotations.align(pose.rotations[self._joints.arms], arms)
         if now < times.ready:
