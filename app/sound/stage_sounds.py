@@ -58,12 +58,12 @@ def open_clips(sources: Mapping[str, SoundSource]) -> dict[str, SoundClip]:
 
 def _open_clip(name: str, source: SoundSource) -> SoundClip:
     if source.path is None:
-        samples = synthesise(STAGE_SOUNDS[name], name, 1)[0]
+        samples = synthesise(STAGE_SOUNDS[name], name, 1)[0].astype(np.float32)
     else:
         try:
             sound = read_speech(source.path, MAX_FILE_S)
         except CharacterError as error:
             raise AppError(f"{source.place}: {error}") from error
-        samples = np.asarray(resample(sound.samples, sound.rate, SAMPLE_RATE), float)
+        samples = resample(sound.samples, sound.rate, SAMPLE_RATE)
     # With the samples that a recording keeps, so that a replay has the very same.
     return SoundClip(decode_sound(encode_sound(samples)), SAMPLE_RATE)

@@ -9,7 +9,7 @@ from cubeling.app.pipeline.cast.cast import Cast
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.scenario import OVER_EVENT, Inputs, ScenarioSettings
-from cubeling.app.pipeline.step import ReplayInputs
+from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.table.attention import Attention
 from cubeling.app.pipeline.table.situation import SeenCube
 from cubeling.app.running.opening import open_session
@@ -139,7 +139,7 @@ def test_a_file_of_bml_is_a_scenario_that_a_replay_repeats(tmp_path, short_sessi
         robot="none",
         language="none",
     )
-    steps = []
+    steps: list[Step] = []
     with open_session(options) as session:
         run(session, steps.append)
     assert any(each.line is not None for each in steps)

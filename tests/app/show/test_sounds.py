@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.scenario import Inputs, ScenarioSettings
+from cubeling.app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.running.opening import open_session
@@ -34,7 +34,8 @@ def play_of(folder, cues):
 
 def outcomes_of(hand, scenario, seconds, clips):
     """Play a scenario whose sounds come as soon as they are asked for, as in a session."""
-    outcomes, asked = [], ()
+    outcomes: list[Outcome] = []
+    asked: tuple[str, ...] = ()
     for _ in range(round(seconds / FRAME)):
         sounds = {name: clips[name] for name in asked if name in clips}
         outcome = scenario.update(hand.frame(), Situation(), Inputs(sounds=sounds))
