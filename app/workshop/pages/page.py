@@ -40,6 +40,7 @@ th:first-child, td:first-child {
   text-align: left; padding-left: 0; white-space: normal; min-width: 9rem;
 }
 .words td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.words th { text-align: left; }
 .words td:first-child { font-weight: 600; min-width: 8rem; overflow-wrap: normal; }
 thead th { border-bottom: 2px solid var(--ink); font-weight: 600; white-space: normal; }
 th.quiet, td.quiet { color: var(--quiet); }

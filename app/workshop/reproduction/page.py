@@ -81,9 +81,11 @@ def write_report(attempts: Sequence[Attempt], folder: Path) -> None:
 def duration(seconds: float) -> str:
     """Return a time in words.
 
-    >>> duration(0.04), duration(31.2), duration(247.0)
-    ('0.04 s', '31 s', '4.1 min')
+    >>> duration(0.04), duration(3.21), duration(31.2), duration(247.0)
+    ('less than 0.1 s', '3.2 s', '31 s', '4.1 min')
     """
+    if seconds < 0.1:
+        return "less than 0.1 s"
     if seconds >= 100.0:
         return f"{seconds / 60.0:.1f} min"
     return f"{seconds:.0f} s" if seconds >= 10.0 else f"{seconds:.2g} s"

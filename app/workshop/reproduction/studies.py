@@ -47,10 +47,6 @@ PRINTED_QUESTIONS = (
 )
 """Table 5.1: when, question and answers."""
 
-VOTE_COLUMNS = ("", "printed", "counted", "simulated")
-
-COMPARED = ("", "printed", "simulated")
-
 NOT_PEOPLE = (
     "Ours are simulated participants, who answer by the printed shares: that they come near shows "
     "that protocol and counting work, and nothing about people."
@@ -75,24 +71,49 @@ def gesture_votes(request: ReproductionRequest) -> Reproduction:
         pair: Votes(*([score for _, score in given].count(each) for each in ANSWER_SCORES))
         for pair, given in scores.items()
     }
-    rows, below = [], []
+    shares, middles, below = [], [], []
     for pair, counted in gesture_and_speech.COUNTS.items():
         own = ours[pair]
         better, worse, mean, median, _ = gesture_and_speech.PRINTED[pair]
-        for what, cells in (
-            ("better [%]", (better, percent(counted.better_share), percent(own.better_share))),
-            ("worse [%]", (worse, percent(counted.worse_share), percent(own.worse_share))),
-            ("mean", (mean, figure(counted.mean), figure(own.mean))),
-            ("median", (median, figure(counted.median, 0), figure(own.median, 1))),
-        ):
-            rows.append((f"{' / '.join(pair)}: {what}", *(c.removesuffix(" %") for c in cells)))
+        name, both = " / ".join(pair), (counted, own)
+        cells = (
+            *(better, *(percent(each.better_share) for each in both)),
+            *(worse, *(percent(each.worse_share) for each in both)),
+        )
+        shares.append((name, *(cell.removesuffix(" %") for cell in cells)))
+        cells = (
+            *(mean, *(figure(each.mean) for each in both)),
+            *(median, *(figure(each.median, 0) for each in both)),
+        )
+        middles.append((name, *cells))
         if pair[1] == "original":
-            shares = (percent(1 - each.worse_share) for each in (counted, own))
-            below.append((pair[0], f"{gesture_and_speech.NOT_BELOW[pair[0]]} %", *shares))
+            rated = (percent(1 - each.worse_share) for each in both)
+            below.append((pair[0], f"{gesture_and_speech.NOT_BELOW[pair[0]]} %", *rated))
     return Reproduction(
         (
-            ReportTable("First against second", VOTE_COLUMNS, tuple(rows)),
-            ReportTable("Not rated below the original", VOTE_COLUMNS, tuple(below)),
+            ReportTable(
+                "First against second: shares",
+                (
+                    "",
+                    *_heads("better [%]", ("counted", "simulated")),
+                    *_heads("worse [%]", ("counted", "simulated")),
+                ),
+                tuple(shares),
+            ),
+            ReportTable(
+                "First against second: scores",
+                (
+                    "",
+                    *_heads("mean", ("counted", "simulated")),
+                    *_heads("median", ("counted", "simulated")),
+                ),
+                tuple(middles),
+            ),
+            ReportTable(
+                "Not rated below the original",
+                ("", "printed", "counted", "simulated"),
+                tuple(below),
+            ),
         ),
         f"counts of 124 answers that have all printed figures, and {EVALUATORS} simulated "
         "evaluators in the protocol 'gesture-and-speech'",
@@ -177,6 +198,7 @@ def facial_actions(request: ReproductionRequest) -> Reproduction:
         rows = []
         for action, means in printed.items():
             for level, values in zip(levels, means, strict=True):
+                cells = [f"{action}, {level}"]
                 for scale, value in zip(single_facial_actions.SCALES, values, strict=True):
                     own = [
                         float(row["answer"])
@@ -184,15 +206,21 @@ def facial_actions(request: ReproductionRequest) -> Reproduction:
                         if row["stimulus"]["action"] == action and row["stimulus"][factor] == level
                     ]
                     mean = sum(own) / len(own) if own else None
-                    rows.append((f"{action}, {level}: {scale}", figure(value), figure(mean)))
-        tables.append(ReportTable(f"Table {number}: means by {factor}", COMPARED, tuple(rows)))
+                    cells += [figure(value), figure(mean)]
+                rows.append(tuple(cells))
+        heads = (name for scale in single_facial_actions.SCALES for name in _heads(scale))
+        tables.append(ReportTable(f"Table {number}: means by {factor}", ("", *heads), tuple(rows)))
     chosen = single_facial_actions.first_choices(answers)
     rates = tuple(
-        (f"{action}, {wrinkles} wrinkles", figure(rate), figure(_share(chosen, action, wrinkles)))
+        (
+            action,
+            *(figure(each[0]), figure(_share(chosen, action, "with"))),
+            *(figure(each[1]), figure(_share(chosen, action, "without"))),
+        )
         for action, each in single_facial_actions.FIRST_CHOICE.items()
-        for wrinkles, rate in zip(("with", "without"), each, strict=True)
     )
-    tables.append(ReportTable("Table 4.5: right label first", COMPARED, rates))
+    columns = ("", *_heads("with wrinkles"), *_heads("without"))
+    tables.append(ReportTable("Table 4.5: right label first", columns, rates))
     return Reproduction(
         tuple(tables),
         f"{RATERS} simulated raters, {len(answers):,} answers to single questions, in the "
@@ -211,6 +239,11 @@ def facial_actions(request: ReproductionRequest) -> Reproduction:
             ),
         ),
     )
+
+
+def _heads(what: str, ours: Sequence[str] = ("simulated",)) -> tuple[str, ...]:
+    """Return the headings of a printed figure and of ours."""
+    return f"printed {what}", *ours
 
 
 def _share(
@@ -298,10 +331,9 @@ def _draw_actions(shown: ReportTable, sheet: "Figure") -> None:
     axes = sheet.subplots()
     identified: list[tuple[str, str, float, float]] = []
     for name, *cells in shown.rows:
-        action, _, level = name.removesuffix(": EXP").partition(", ")
-        if name.endswith(": EXP"):
-            printed, own = (float(cell.replace("–", "nan")) for cell in cells)
-            identified.append((action, level, printed, own))
+        action, _, level = name.partition(", ")
+        printed, own = (float(cell.replace("–", "nan")) for cell in cells[:2])  # EXP
+        identified.append((action, level, printed, own))
     actions = list(dict.fromkeys(action for action, *_ in identified))
     levels = list(dict.fromkeys(level for _, level, *_ in identified))
     for marker, level in zip("^v", levels, strict=True):
