@@ -118,8 +118,9 @@ def gesture_votes(request: ReproductionRequest) -> Reproduction:
         f"counts of 124 answers that have all printed figures, and {EVALUATORS} simulated "
         "evaluators in the protocol 'gesture-and-speech'",
         "The thesis prints shares, means and medians, not counts: the counts are ours, and 10 of "
-        f"124 are 8.1 %, printed as 8.0. {NOT_PEOPLE} The films are not public. Only the text "
-        "about the figures is left: box plots of the scores.",
+        f"124 are 8.1 %, printed as 8.0. {NOT_PEOPLE} The films are not public. Our specification "
+        "has the figures of the tables without their numbers, and of the two figures only that "
+        "they are box plots.",
         (
             Plot(
                 "Figure 4.13: scores of the conditions against each other, counted",

@@ -27,7 +27,7 @@ from rich.table import Table
 
 from cubeling.app.workshop.reproduction.bodies.occlusion_timing import (
     THESIS_MS,
-    Timing,
+    OcclusionTiming,
     Variant,
     fit_line,
     measure,
@@ -184,7 +184,7 @@ def show_variants(console: Console, qualities: list[VariantQuality]) -> None:
     console.print(table)
 
 
-def show_times(console: Console, times: dict[Variant, Timing], software: bool) -> None:
+def show_times(console: Console, times: dict[Variant, OcclusionTiming], software: bool) -> None:
     """Print Table 3.1 from this machine, and its fits."""
     table = Table(
         "estimator",

@@ -31,7 +31,7 @@ Variant = tuple[str, int, bool]
 
 
 @dataclass(frozen=True)
-class Timing:
+class OcclusionTiming:
     """Time of one variant, blur included."""
 
     cpu_ms: float
@@ -54,7 +54,7 @@ def measure(
     buffer: GBuffer,
     variants: Mapping[Variant, AmbientOcclusionSettings],
     rounds: int = ROUNDS,
-) -> dict[Variant, Timing]:
+) -> dict[Variant, OcclusionTiming]:
     """Draw all variants in turn, round by round, and return the least times of each."""
     effects = {key: AmbientOcclusion(context, programs, each) for key, each in variants.items()}
     query = context.query(time=True)
@@ -72,7 +72,7 @@ def measure(
                 least[key] = tuple(map(min, taken, least.get(key, taken)))
     for effect in effects.values():
         effect.release()
-    return {key: Timing(*times) for key, times in least.items()}
+    return {key: OcclusionTiming(*times) for key, times in least.items()}
 
 
 @dataclass(frozen=True)
