@@ -19,7 +19,7 @@ plan, frame
 jump
     Greatest step of a joint between two frames at a join, over the greatest in the recordings.
 
-Then: the intensity rule on and off, the gesture slider, Table 4.2, hands that meet the body, and
+Then: the intensity rule on and off, the gesture slider, hands that meet the body, and
 how many authored strokes are found again by `cubeling gesture learn`. Exits with 1 if a bar of
 issue 16 is missed.
 
@@ -48,7 +48,6 @@ from cubeling.characters.skeleton import rotations
 from cubeling.characters.speech.prosody.analysis import utterance_of
 from cubeling.characters.speech.speech import Accent
 from cubeling.characters.speech.voices import VoiceError, espeak
-from cubeling.characters.synthesis.gestures.graph import sweep
 from cubeling.characters.synthesis.gestures.learning import RATE_HZ, WALKS, find_gestures
 from cubeling.characters.synthesis.gestures.library import GestureLibrary
 from cubeling.characters.synthesis.gestures.marks import Agreement, marks_of
@@ -59,7 +58,6 @@ from cubeling.characters.synthesis.gestures.planning import GesturePlanner, Gest
 SEEDS = 12
 ACCENTS = 60
 FRAME_S = 1 / 60
-THRESHOLDS = (0.003, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5)
 HEADINGS = ("model", "accents", "invalid", "apex", "Δ", "w", "cost", "plan", "frame", "jump")
 MAX_INVALID, MAX_PLAN_MS, MAX_FRAME_MS, MAX_JUMP = 0.03, 30.0, 0.1, 2.0
 STRICT = GestureSettings(accent_floor=0.0)
@@ -345,13 +343,6 @@ def main() -> int:
         shown = ", ".join(f"{each:.2f}" for each in means)
         console.print(f"slider −1, 0, 1, {settings.model}: mean GSI {shown}")
         good &= means[0] <= means[1] <= means[2]
-    rows = Table(title="Table 4.2 of this library")
-    for heading in ("st", "BF", "SCC", "SCC BF"):
-        rows.add_column(heading, justify="right")
-    for row in sweep(library, THRESHOLDS):
-        shares = row.branching, row.component, row.component_branching
-        rows.add_row(f"{row.threshold:g}", *(f"{each:.4g}" for each in shares))
-    console.print(rows)
     recorded, played = collisions(library, plans)
     console.print(
         f"a hand meets the body in {recorded:.2%} of recorded, {played:.2%} of planned frames"

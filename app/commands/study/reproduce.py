@@ -60,7 +60,7 @@ def reproduce(
     tables = chosen_tables(names or ())
     if listing:
         for table in tables:
-            needs = table.missing or (f"needs {table.needs}" if table.needs else "")
+            needs = table.missing or (f"needs {', '.join(table.needs)}" if table.needs else "")
             console.print(f"[bold]{table.name}[/]: {escape(table.title)} ({escape(table.source)})")
             if needs:
                 console.print(f"    {escape(needs)}", style="dim", highlight=False)

@@ -32,8 +32,8 @@ class PrintedTable:
     """Module of this folder, and after a colon the function in it if that is not `reproduce`, which
     makes it from a request; empty if nobody can."""
 
-    needs: str = ""
-    """Folder of recordings, in that of `--data`, without which it cannot be made."""
+    needs: tuple[str, ...] = ()
+    """Folders of recordings, in that of `--data`, without which it cannot be made."""
 
     takes_clips: bool = False
     """Whether it can be made from motions of the user's own."""
@@ -61,9 +61,9 @@ class PrintedTable:
             raise AppError(f"{self.name}: {self.missing}")
         if request.clips and not self.takes_clips:
             raise AppError(f"{self.name}: it is made from no clips; leave out --clip")
-        if self.needs and not request.clips:
+        for name in () if request.clips else self.needs:
             try:
-                request.folder(self.needs)
+                request.folder(name)
             except AppError as error:
                 raise AppError(f"{self.name}: {error}") from error
         module, _, function = self.module.partition(":")
@@ -82,7 +82,7 @@ TABLES: Mapping[str, PrintedTable] = MappingProxyType(
                 "tables 3.2 to 3.4, figures 3.14 and 3.15",
                 "Motion graphs of whole bodies and of body parts: time, response, best split",
                 "motion_graphs.body_parts",
-                needs="cmu-mocap",
+                needs=("cmu-mocap",),
                 takes_clips=True,
             ),
             PrintedTable(
@@ -91,7 +91,7 @@ TABLES: Mapping[str, PrintedTable] = MappingProxyType(
                 "figures 3.8 to 3.10, equation 3.3",
                 "Progressive transitions: which part of the body leaves and arrives when",
                 "motion_graphs.transitions",
-                needs="cmu-mocap",
+                needs=("cmu-mocap",),
             ),
             PrintedTable(
                 "gesture-strength",
@@ -125,7 +125,7 @@ TABLES: Mapping[str, PrintedTable] = MappingProxyType(
                 "figures 4.7 and 4.8",
                 "How long gestures lead their accents, and how strong they are",
                 "gesturing.timing",
-                needs="speech",
+                needs=("speech",),
             ),
             PrintedTable(
                 "gesture-votes",
@@ -154,7 +154,7 @@ TABLES: Mapping[str, PrintedTable] = MappingProxyType(
                 "tables 8.1 and 8.2",
                 "Telling weak accents from strong ones (MCC)",
                 "gesturing.accent_strength",
-                needs="speech",
+                needs=("speech",),
             ),
             PrintedTable(
                 "posture-distance",
@@ -162,7 +162,7 @@ TABLES: Mapping[str, PrintedTable] = MappingProxyType(
                 "figures 3.3 to 3.6",
                 "How many components of a posture find its nearest neighbour",
                 "standing.posture_distance",
-                needs="idle",
+                needs=("idle", "cmu-mocap", "bvh"),
             ),
             PrintedTable(
                 "idle-motion",
@@ -170,7 +170,7 @@ TABLES: Mapping[str, PrintedTable] = MappingProxyType(
                 "figures 3.8 and 3.12",
                 "A person's balance shifts, rests and small variations",
                 "standing.idle_figures",
-                needs="idle",
+                needs=("idle",),
             ),
             PrintedTable(
                 "idle-study",
@@ -178,7 +178,7 @@ TABLES: Mapping[str, PrintedTable] = MappingProxyType(
                 "section 3.3.2",
                 "Whose idle motion is it, and is it recorded or generated",
                 "standing.idle_study",
-                needs="idle",
+                needs=("idle",),
             ),
             PrintedTable(
                 "expressions",

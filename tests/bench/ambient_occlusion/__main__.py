@@ -1,4 +1,4 @@
-"""Quality and time of ambient occlusion: `python -m tests.bench.ambient_occlusion`.
+"""Quality of ambient occlusion: `python -m tests.bench.ambient_occlusion`.
 
 Prints, for pictures of `--size`:
 
@@ -8,9 +8,8 @@ Prints, for pictures of `--size`:
    characters alone: the hardest part of a picture, with folds as wide as a texel.
 3. All estimators, full and separable, with k = 5, 11 and 21, against the rays and against the full
    form; and how the patterns differ.
-4. Table 3.1 of Huang 2013: times of the full and the separable form, blur included, and their fits.
-   With software rendering they are CPU times of all threads: its timer query is the clock, which
-   other programs slow down.
+
+Times, Table 3.1 of Huang 2013, are those of `cubeling reproduce ambient-occlusion`.
 
 `--quick` leaves out the third part. Exits with 1 if the default settings miss a mean ΔE76 of 3 on
 any scene that is held out, or a root mean squared error of 0.03 on a scene with a character or over
@@ -19,20 +18,12 @@ all of them.
 
 import argparse
 import sys
-from dataclasses import replace
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cubeling.app.workshop.reproduction.bodies.occlusion_timing import (
-    THESIS_MS,
-    OcclusionTiming,
-    Variant,
-    fit_line,
-    measure,
-)
-from cubeling.characters.rendering import create_context, draws_in_software
+from cubeling.characters.rendering import create_context
 from cubeling.characters.rendering.deferred.ambient_occlusion import ESTIMATORS
 from cubeling.characters.rendering.programs import ShaderPrograms
 from tests.bench.ambient_occlusion.product import ProductQuality, product_quality
@@ -44,7 +35,7 @@ from tests.bench.ambient_occlusion.quality import (
     variant_qualities,
 )
 from tests.bench.ambient_occlusion.scenes import CHARACTERS, HELD_OUT, TUNED, load
-from tests.bench.ambient_occlusion.scoring import THESIS, TracedScene, buffer_of
+from tests.bench.ambient_occlusion.scoring import TracedScene
 
 MAX_RMSE, MAX_DELTA_E = 0.03, 3.0
 """The gate."""
@@ -54,9 +45,6 @@ RAYS = 128
 
 COMPARED, COMPARED_SIZE, COMPARED_RAYS = ("balls", "boxes", "human"), (256, 192), 128
 """Scenes, size and rays of the third part: it draws 150 variants of each scene."""
-
-TIMED = "spheres"
-"""The scene of the fourth part: 48,000 triangles."""
 
 
 def show_scenes(console: Console, qualities: list[SceneQuality]) -> None:
@@ -184,49 +172,6 @@ def show_variants(console: Console, qualities: list[VariantQuality]) -> None:
     console.print(table)
 
 
-def show_times(console: Console, times: dict[Variant, OcclusionTiming], software: bool) -> None:
-    """Print Table 3.1 from this machine, and its fits."""
-    table = Table(
-        "estimator",
-        "k",
-        "full [ms]",
-        "separable [ms]",
-        "times faster",
-        "thesis",
-        "on the clock [ms]",
-        "timer query [ms]",
-        title=f"Table 3.1: {TIMED}, {'CPU time of all threads' if software else 'timer query'}",
-    )
-    fits = Table("estimator", "form", "constant [ms]", "per sample [µs]", "R²", title="Fits")
-    for name in ESTIMATORS:
-        for samples in SAMPLES:
-            pair = full, separable = times[name, samples, False], times[name, samples, True]
-            thesis = THESIS_MS.get(name, {}).get(samples)
-            table.add_row(
-                name,
-                str(samples),
-                *(f"{each.main_ms(software):.1f}" for each in pair),
-                f"{full.main_ms(software) / separable.main_ms(software):.2f}",
-                "" if thesis is None else f"{thesis[0] / thesis[1]:.2f}",
-                ", ".join(f"{each.wall_ms:.1f}" for each in pair),
-                ", ".join(f"{each.query_ms:.1f}" for each in pair),
-            )
-        for separable_form, label in ((False, "full, in k²"), (True, "separable, in 2k")):
-            counts = [each * (2 if separable_form else each) for each in SAMPLES]
-            fit = fit_line(
-                counts, [times[name, each, separable_form].main_ms(software) for each in SAMPLES]
-            )
-            fits.add_row(
-                name,
-                label,
-                f"{fit.constant_ms:.1f}",
-                f"{fit.slope_us:.0f}",
-                f"{fit.r_squared:.4f}",
-            )
-    console.print(table)
-    console.print(fits)
-
-
 def _figures(rmse: float, *differences: float) -> tuple[str, ...]:
     return f"{rmse:.4f}", *(f"{each:.2f}" for each in differences)
 
@@ -259,24 +204,6 @@ def main() -> None:
             console,
             variant_qualities(context, programs, COMPARED, COMPARED_SIZE, COMPARED_RAYS),
         )
-    timed = next(scene for scene in scenes if scene.scene.name == TIMED)
-    buffer = buffer_of(context, timed)
-    variants = {
-        (name, samples, separable): replace(
-            THESIS,
-            estimator=name,
-            samples=samples,
-            lines=2 if separable else None,
-            radius_m=timed.scene.radius_m,
-        )
-        for name in ESTIMATORS
-        for samples in SAMPLES
-        for separable in (False, True)
-    }
-    renderer = context.info["GL_RENDERER"]
-    show_times(console, measure(context, programs, buffer, variants), draws_in_software(context))
-    console.print(f"{width}×{height}, {renderer}", soft_wrap=True)
-    buffer.release()
     programs.release()
     context.release()
     sys.exit(not good)

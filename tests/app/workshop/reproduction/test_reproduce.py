@@ -60,7 +60,7 @@ def test_a_table_that_cannot_be_made_says_why(cubeling, tmp_path) -> None:
         ("idle", "there are not two .bvh files"),
     ):
         (tmp_path / name).mkdir()
-        table = next(each for each in TABLES.values() if each.needs == name)
+        table = next(each for each in TABLES.values() if each.needs == (name,))
         code, _, err = cubeling("reproduce", table.name, "--data", tmp_path)
         assert code == 2
         assert message in err
