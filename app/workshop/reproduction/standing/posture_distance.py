@@ -120,7 +120,8 @@ def posture_sets(request: ReproductionRequest) -> tuple[PostureVectors, dict[str
 def postures_of(kind: PostureVectors, clips: Sequence[Clip]) -> Array:
     """Return posture vectors of clips, evenly spread over them, (`FRAMES`, size)."""
     rows = np.concatenate([kind.vectors(clip.in_place) for clip in clips])
-    return rows[np.linspace(0, len(rows) - 1, FRAMES).astype(int)]
+    found: Array = rows[np.linspace(0, len(rows) - 1, FRAMES).astype(int)]
+    return found
 
 
 def reproduce(request: ReproductionRequest) -> Reproduction:
