@@ -1,5 +1,6 @@
 """The screen of a session in browsers."""
 
+import re
 import time
 from collections.abc import Callable, Collection
 from dataclasses import replace
@@ -30,6 +31,9 @@ REPORT_S = 0.5
 
 RETRY_S = 2.0
 """How often another camera is asked for [s], as long as a recording keeps the present one."""
+
+KEY_TO_PRESS = re.compile(r"press \d+ to play (\w+)")
+"""What a hint says of a key, as of `other_cube.advice`: a page has a picture to touch instead."""
 
 
 class WebScreen:
@@ -73,11 +77,12 @@ class WebScreen:
         self._told: dict[str, object] = {}
         self._told_at = self._asked_at = -float("inf")
         self._notice: Notice | None = None
+        self._offer = ""
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step on all pages, and return what players ask of the scenario."""
         self._notice = None
-        step = self._hint_reader.update(step)
+        step = self._without_keys(self._hint_reader.update(step))
         self._shown = step, robot
         wanted = self._server.wanted
         if step.picture is not None and wanted:
@@ -122,6 +127,15 @@ class WebScreen:
         """Show nothing any more; a second call does nothing."""
         self._encoder.close()
 
+    def _without_keys(self, step: Step) -> Step:
+        """Return a step whose hint says what to touch; keep which scenario that is."""
+        found = KEY_TO_PRESS.search(step.outcome.hint)
+        self._offer = "" if found is None else found[1]
+        if found is None:
+            return step
+        hint = KEY_TO_PRESS.sub(r"touch to play \1", step.outcome.hint)
+        return replace(step, outcome=replace(step.outcome, hint=hint))
+
     def _pictures(self, wanted: Collection[str]) -> dict[str, Picture]:
         """Return the last step as the pages want to see it."""
         assert self._shown is not None
@@ -154,6 +168,7 @@ class WebScreen:
             "scenario": status.scenario,
             "recording": status.recording,
             "notice": None if notice is None else [notice.title, notice.advice],
+            "offer": self._offer,
             "hint": "" if self._shown is None else self._shown[0].outcome.hint,
         }
         recording = status.recording is not None

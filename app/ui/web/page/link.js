@@ -1,6 +1,6 @@
 /* The connection: each message shows that it is alive, and a silent one is opened again. */
 const PATHS = {play: "/", window: "/window", camera: "/camera", view: "/view"};
-const SILENT_S = 2, TRY_S = 1.5, AGAIN_MS = 400, PATIENCE = 2;
+const SILENT_S = 2, TRY_S = 1.5, AGAIN_MS = 250, PATIENCE = 2;
 const clear = query.get("background") === "none";
 let role = Object.keys(PATHS).find(each => PATHS[each] === location.pathname) || "play";
 let page = stored("sessionStorage", "page", () => random(16));

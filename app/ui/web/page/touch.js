@@ -46,8 +46,22 @@ function showStatus() {
   if (session.notice && place !== "yours") toast(session.notice.join(". "));
   $("picture").setAttribute("aria-label", `${T.picture}: ${session.scenario || ""}`);
   if ($("said").textContent !== (session.hint || "")) $("said").textContent = session.hint || "";
+  offerGame();
   markGame();
 }
+
+/* The cube in view plays another game: its picture is there to be touched. */
+function offerGame() {
+  const place = (welcome?.scenarios || []).findIndex(game => game.name === session.offer);
+  const there = place >= 0 && place in tiles && playing && role !== "camera";
+  if (there) $("offer").firstElementChild.src = tiles[place];
+  $("offer").hidden = !there || role === "view";
+  $("offer").setAttribute("aria-label", `${T.go}: ${session.offer}`);
+}
+$("offer").onclick = () => {
+  say({do: "play", name: session.offer});
+  $("offer").hidden = true;
+};
 
 /* The games, by their pictures. */
 function listGames() {

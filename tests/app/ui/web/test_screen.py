@@ -1,17 +1,20 @@
 """The screen on pages: what players ask for, other cameras, and pictures for each kind of page."""
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from cubeling.app.pipeline.other_cube import advice
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView
 from cubeling.app.ui.playback.requests import Choose, MarkMoment, Record
 from cubeling.app.ui.playback.status import SessionStatus
 from cubeling.app.ui.web.messages import read_said
 from cubeling.app.ui.web.screen import RETRY_S, WebScreen
+from cubeling.tracking import CubeModel
 
 ROBOT = RobotView("none", 0.0, "neutral")
 
@@ -50,14 +53,26 @@ def desk(tmp_path):
     screen.close()
 
 
-def step_of(picture):
-    """Return as much of a step as a screen without cards looks at."""
-    return SimpleNamespace(
-        picture=picture,
-        frame=SimpleNamespace(encoded=b"", image=np.zeros_like(picture), timestamp=1.0),
-        outcome=SimpleNamespace(hint=""),
-        state=SimpleNamespace(visible=True),
-    )
+@dataclass
+class Hinting:
+    """As much of a decision as a screen without cards looks at."""
+
+    hint: str
+
+
+@dataclass
+class Stepped:
+    """The same of a step."""
+
+    picture: Any
+    frame: Any
+    outcome: Hinting
+    state: Any
+
+
+def step_of(picture, hint=""):
+    frame = SimpleNamespace(encoded=b"", image=np.zeros_like(picture), timestamp=1.0)
+    return Stepped(picture, frame, Hinting(hint), SimpleNamespace(visible=True))
 
 
 def test_what_is_touched_reaches_the_scenario_and_the_session(desk):
@@ -94,6 +109,14 @@ def test_players_are_told_of_all_but_of_the_phone_in_their_hand(desk):
     assert desk.pages.words == ["Playing follow"]
 
 
+def test_a_cube_of_another_game_offers_that_game_to_be_touched(desk):
+    hint = advice(CubeModel.load("locomotion"), "companion", "companion", fixed=False)
+    desk.screen.show(step_of(np.zeros((8, 8, 3), np.uint8), hint), ROBOT)
+    desk.screen.report(SessionStatus(scenario="companion"))
+    assert desk.pages.statuses[-1]["offer"] == "follow"
+    assert desk.pages.statuses[-1]["hint"].endswith("touch to play follow")
+
+
 def test_pages_that_view_get_the_picture_alone_mirrored_as_asked(desk):
     rng = np.random.default_rng(3)
     picture = rng.integers(0, 255, (36, 64, 3), np.uint8)
@@ -118,5 +141,5 @@ def test_pages_are_told_that_nothing_has_changed_twice_a_second_only(desk):
     desk.now[0] += 0.6
     desk.screen.report(SessionStatus(scenario="follow", recording=1.5))
     assert desk.pages.statuses[-1] == {
-        "scenario": "follow", "recording": 1.5, "notice": None, "hint": "",
+        "scenario": "follow", "recording": 1.5, "notice": None, "offer": "", "hint": "",
     }  # fmt: skip
