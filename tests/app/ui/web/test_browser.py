@@ -1,12 +1,14 @@
 """The page in a real browser, where there is one."""
 
 import asyncio
+import hashlib
 import json
 from contextlib import AsyncExitStack
 from types import SimpleNamespace
 
 import pytest
 
+from cubeling.tracking import open_source
 from tests.bench.web.camera import write_camera
 from tests.bench.web.chromium import chromium, program
 from tests.bench.web.faulty_proxy import FaultyProxy
@@ -20,6 +22,16 @@ pytestmark = [
 ]
 
 ROLE = "$('role').textContent"
+
+HASH_PICTURES = """(() => {
+  const own = send;
+  window.sent = [];
+  send = async (jpeg, taken) => {
+    own(jpeg, taken);
+    const digest = await crypto.subtle.digest("SHA-256", await jpeg.arrayBuffer());
+    sent.push(Array.from(new Uint8Array(digest), b => b.toString(16).padStart(2, "0")).join(""));
+  };
+})()"""
 
 COUNT_SAMPLES = """(async () => {
   const counter = `registerProcessor("counter", class extends AudioWorkletProcessor {
@@ -85,6 +97,29 @@ def test_a_browser_plays_and_goes_on_after_a_reload_and_faults_of_its_line(desk)
             await time_to_picture(tab, 20.0)
         assert not errors(tab)
         await tab.call("Page.close")
+
+    desk.use(use())
+
+
+def test_a_recording_holds_the_very_pictures_that_the_browser_has_sent(desk):
+    async def use():
+        tab = await desk.browser.tab()
+        await play(tab, desk.served.address)
+        await tab.run(HASH_PICTURES)
+        before = await tab.run("shown")
+        await tab.until(f"shown > {before + 5}")
+        await tab.run("bar.record.click()")
+        await tab.until("session.recording > 1.0", 60.0)
+        await tab.run("bar.record.click()")
+        await tab.until("session.recording == null && !$('role').hidden", 60.0)
+        sent = {*json.loads(await tab.run("JSON.stringify(sent)"))}
+        assert not errors(tab)
+        await tab.call("Page.close")
+        (path,) = desk.served.folder.glob("**/*.mcap")
+        with open_source(str(path)) as frames:
+            kept = [hashlib.sha256(frame.encoded).hexdigest() for frame in frames]
+        assert kept
+        assert {*kept} <= sent
 
     desk.use(use())
 
