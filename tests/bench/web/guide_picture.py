@@ -8,10 +8,17 @@ import numpy as np
 
 from tests.bench.web.camera import write_camera
 from tests.bench.web.chromium import chromium
+from tests.bench.web.playing import open_phone
 from tests.bench.web.serving import say, serving
 
 GUIDE_PICTURE = Path(__file__).parents[3] / "docs" / "pictures" / "phone.jpg"
 PHONE, HEIGHT_PX, GAP_PX = (390, 844), 900, 24
+
+SETTLE_S = 1.0
+"""Time until what moves on the page has come to rest [s]."""
+
+KISSING = "Turn the cube like a knob: right for more, left for less"
+"""The hint while the character does something."""
 
 AS_IT_IS = (
     "(() => { const of = navigator.mediaDevices, get = of.getUserMedia.bind(of); "
@@ -28,14 +35,18 @@ async def picture(folder: Path) -> None:
     async with chromium(camera) as browser, serving(folder) as served:
         tab = await browser.tab()
         await tab.resize(*PHONE, phone=True)
-        await tab.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
-        await tab.open(served.address)
-        await tab.until("!$('start').hidden && Object.keys(tiles).length > 3")
-        for number, (script, seconds) in enumerate(
-            (("true", 0.5), (f"{AS_IT_IS}; $('go').click()", 9.0), ("BUTTONS.games()", 1.0))
+        await open_phone(tab, served.address)
+        await tab.run("$('delay').hidden = true")  # it says how busy the computer is that draws
+        for number, (script, done) in enumerate(
+            (
+                ("true", "true"),
+                (f"{AS_IT_IS}; $('go').click()", f"$('said').textContent === {KISSING!r}"),
+                ("BUTTONS.games()", "true"),
+            )
         ):
             await tab.run(script)
-            await asyncio.sleep(seconds)
+            await tab.until(done, 120.0)
+            await asyncio.sleep(SETTLE_S)
             await tab.picture(folder / f"{number}.png")
             shots.append(cv2.imread(str(folder / f"{number}.png")))
     width = round(HEIGHT_PX * PHONE[0] / PHONE[1])
