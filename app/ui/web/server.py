@@ -168,8 +168,8 @@ class WebServer:
         self._tell_all(lambda client: client.show(picture))
 
     def sound(self, message: bytes) -> None:
-        """Let all pages hear a binary message of sound."""
-        self._tell_all(lambda client: client.sound(message))
+        """Let all pages hear a binary message of sound; a camera beside a screen is silent."""
+        self._tell_all(lambda client: client.look and client.sound(message))
 
     def report(self, status: dict[str, object]) -> None:
         """Tell all pages the status of the session, and those that come later."""
@@ -186,7 +186,7 @@ class WebServer:
             self._closing = True
             self._thread.join(5.0)
 
-    def _tell_all(self, tell: Callable[[PageClient], None]) -> None:
+    def _tell_all(self, tell: Callable[[PageClient], object]) -> None:
         def tell_each() -> None:
             for client in self._clients.values():
                 tell(client)

@@ -117,7 +117,7 @@ def test_a_recording_holds_the_very_pictures_that_the_browser_has_sent(desk):
         await tab.call("Page.close")
         (path,) = desk.served.folder.glob("**/*.mcap")
         with open_source(str(path)) as frames:
-            kept = [hashlib.sha256(frame.encoded).hexdigest() for frame in frames]
+            kept = [hashlib.sha256(frame.encoded or b"").hexdigest() for frame in frames]
         assert kept
         assert {*kept} <= sent
 

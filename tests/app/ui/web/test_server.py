@@ -16,7 +16,7 @@ from aiohttp import web
 
 from cubeling.app.admission import Token
 from cubeling.app.ui.web.limits import WebLimits
-from cubeling.app.ui.web.messages import PICTURE, pack, read_said, unpack
+from cubeling.app.ui.web.messages import PICTURE, SOUND, pack, read_said, unpack
 from cubeling.app.ui.web.page import MAX_PAGE_BYTES, document, page
 from cubeling.app.ui.web.place import CAMERA_QUIET_S, CameraPlace
 from cubeling.app.ui.web.server import LOOPBACK, Listener, WebServer
@@ -290,6 +290,22 @@ def test_players_ask_and_viewers_cannot():
             assert server.take_requests() == [read_said('{"do":"play","name":"follow"}')]
             assert server.take_requests() == []
             assert server.wanted == {("plain", 0), ("cards", 0)}
+
+    serve(use)
+
+
+def test_a_camera_beside_a_screen_gets_neither_pictures_nor_sound():
+    async def use(server):
+        async with page_of(server, "camera", "camera") as camera, page_of(server) as screen:
+            server.show(Drawn(1))
+            assert await screen.picture() == 1
+            server.sound(pack(SOUND, 2, 0.0, bytes(8)))
+            sound = await asyncio.wait_for(screen.socket.receive(), WAIT_S)
+            while sound.type == aiohttp.WSMsgType.TEXT:
+                sound = await asyncio.wait_for(screen.socket.receive(), WAIT_S)
+            assert sound.data == pack(SOUND, 2, 0.0, bytes(8))
+            await camera.say(do="tick")
+            await camera.told("tick")  # and nothing binary came before it
 
     serve(use)
 
