@@ -89,7 +89,7 @@ class PageClient:
             self._picture = picture
             self._waiting.set()
 
-    def sound(self, message: bytes) -> None:
+    def send(self, message: bytes) -> None:
         """Send a binary message that must not be left out, if it is read soon enough."""
         self._sounds.append(message)
         self._waiting.set()

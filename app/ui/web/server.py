@@ -169,7 +169,7 @@ class WebServer:
 
     def sound(self, message: bytes) -> None:
         """Let all pages hear a binary message of sound; a camera beside a screen is silent."""
-        self._tell_all(lambda client: client.look and client.sound(message))
+        self._tell_all(lambda client: client.send(message) if client.look else None)
 
     def report(self, status: dict[str, object]) -> None:
         """Tell all pages the status of the session, and those that come later."""
@@ -186,7 +186,7 @@ class WebServer:
             self._closing = True
             self._thread.join(5.0)
 
-    def _tell_all(self, tell: Callable[[PageClient], object]) -> None:
+    def _tell_all(self, tell: Callable[[PageClient], None]) -> None:
         def tell_each() -> None:
             for client in self._clients.values():
                 tell(client)
@@ -331,7 +331,7 @@ class WebServer:
         self._place.join(client)
         if client.role in PLAYER_ROLES:
             for tile in self.tiles:
-                client.sound(tile)
+                client.send(tile)
         try:
             why = await client.serve(
                 lambda said: self._hear(client, said),
