@@ -15,11 +15,12 @@ from cubeling.app.sound import SAMPLE_RATE
 from cubeling.app.ui.cards.overlay import virtual_robot_side
 from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.playback.scenario_card import scenario_picture, summary_of
+from cubeling.app.ui.web.acceptor import Listener
 from cubeling.app.ui.web.camera import PageCameras
 from cubeling.app.ui.web.messages import TILE, pack
 from cubeling.app.ui.web.picture import encoded
 from cubeling.app.ui.web.screen import WebScreen
-from cubeling.app.ui.web.server import LOOPBACK, Listener, WebServer
+from cubeling.app.ui.web.server import LOOPBACK, WebServer
 
 if TYPE_CHECKING:
     import moderngl

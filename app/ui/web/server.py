@@ -2,25 +2,21 @@
 
 import asyncio
 import contextlib
-import gc
 import re
-import socket
-import ssl
 import threading
 import time
 from collections import deque
-from collections.abc import Awaitable, Callable, Coroutine, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, cast, get_args
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from typing import cast, get_args
 from urllib.parse import urlsplit
 
 from aiohttp import web
-from aiohttp.web_protocol import RequestHandler
 
 from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
+from cubeling.app.ui.web.acceptor import Acceptor, Listener
 from cubeling.app.ui.web.client import LAST_WORDS_S, Look, PageClient, ShownPicture
-from cubeling.app.ui.web.limits import RateLimit, WebLimits
+from cubeling.app.ui.web.limits import WebLimits
 from cubeling.app.ui.web.messages import PLAYER_ROLES, Role, Said
 from cubeling.app.ui.web.page import Document, page
 from cubeling.app.ui.web.place import CameraPlace
@@ -43,29 +39,14 @@ Route = Callable[[web.BaseRequest], Awaitable[web.StreamResponse]]
 
 REFUSED = "the token is missing or wrong\n"
 
-CHECK_EVERY_S = 0.5
-CONNECTIONS_PER_COLLECTION = 20
-"""After so many connections, what they have left is collected."""
+CHECK_EVERY_S = 0.1
+"""How often it is looked whom the limits of time let go [s]."""
 
 MAX_REQUESTS = 64
 """What players have asked and nobody has carried out yet; of more, the oldest are forgotten."""
 
 PAGE_NAME = re.compile(r"[a-z0-9]{4,32}")
 CAMERA_NAME = re.compile(r"[a-z0-9]{1,16}(-[a-z]{1,8})?")
-
-
-@dataclass(frozen=True)
-class Listener:
-    """An address at which the server listens."""
-
-    host: str
-    """As "127.0.0.1"."""
-
-    port: int
-    """The TCP port; 0 for any free one."""
-
-    tls: ssl.SSLContext | None = None
-    """The certificate; None for plain HTTP, which browsers let use the camera on localhost only."""
 
 
 class WebServer:
@@ -120,13 +101,10 @@ class WebServer:
         self._status: dict[str, object] = {}
         self._requests: deque[Said] = deque(maxlen=MAX_REQUESTS)
         self._clients: dict[str, PageClient] = {}
-        self._strangers: dict[RequestHandler, float] = {}
         self._place = CameraPlace(clock)
         self._tags: deque[tuple[bytes, str, float]] = deque(maxlen=64)
-        self._connected = 0
-        self._tasks: set[asyncio.Task[None]] = set()
-        self._sockets = [_listen(each) for each in listeners]
-        self.ports: list[int] = [each.getsockname()[1] for each in self._sockets]
+        self._acceptor = Acceptor(listeners, self._limits, clock)
+        self.ports: list[int] = self._acceptor.ports
         """The port of each listener."""
         self.listeners = tuple(listeners)
         self.fingerprint = ""
@@ -203,75 +181,25 @@ class WebServer:
 
     async def _serve(self) -> None:
         self._server = web.Server(self._answer, access_log=None, keepalive_timeout=2.0)
-        for each, listener in zip(self._sockets, self.listeners, strict=True):
-            self._start(self._accept(each, listener.tls))
+        self._acceptor.start(self._server)
         while not self._closing:
-            await asyncio.sleep(CHECK_EVERY_S / 5)
+            await asyncio.sleep(CHECK_EVERY_S)
             self._check(self._clock())
-        for task in tuple(self._tasks):
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._acceptor.stop()
         for client in self._clients.values():
             client.leave("the program ends")
         end = self._clock() + LAST_WORDS_S
         while self._clients and self._clock() < end:
             await asyncio.sleep(0.01)
         await self._server.shutdown(1.0)
-        for each in self._sockets:
-            each.close()
-
-    def _start(self, work: Coroutine[Any, Any, None]) -> None:
-        task = self._loop.create_task(work)
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
-
-    async def _accept(self, listening: socket.socket, tls: ssl.SSLContext | None) -> None:
-        """Accept connections, so many a second: others wait in the system's queue."""
-        rate = self._limits.connections_per_s
-        pace = RateLimit(rate, self._limits.burst / rate)
-        while True:
-            while not pace.allows(1.0, self._clock()):
-                await asyncio.sleep(1.0 / rate)
-            try:
-                accepted, _ = await self._loop.sock_accept(listening)
-            except OSError:  # too many files are open, for example
-                await asyncio.sleep(CHECK_EVERY_S)
-                continue
-            accepted.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self._connected += 1
-            self._start(self._connect(accepted, tls))
-
-    async def _connect(self, accepted: socket.socket, tls: ssl.SSLContext | None) -> None:
-        handler = self._server()
-        more = {} if tls is None else {"ssl_handshake_timeout": self._limits.stranger_s}
-        try:
-            await self._loop.connect_accepted_socket(lambda: handler, accepted, ssl=tls, **more)
-        except (OSError, ssl.SSLError, TimeoutError):
-            accepted.close()
-            return
-        if len(self._strangers) >= self._limits.strangers:
-            self._drop(next(iter(self._strangers)))
-        self._strangers[handler] = self._clock()
 
     def _check(self, now: float) -> None:
         """Let go whom the limits of time let go."""
-        # What is no HTTP leaves cycles with a quarter of a megabyte each. A program that draws
-        # looks for garbage too seldom for a flood of those, and only young objects are looked at.
-        if self._connected >= CONNECTIONS_PER_COLLECTION:
-            self._connected = 0
-            gc.collect(0)
-        for handler, since in tuple(self._strangers.items()):
-            if handler.transport is None or now - since > self._limits.stranger_s:
-                self._drop(handler)
+        self._acceptor.check(now)
         self._place.check()
         for client in tuple(self._clients.values()):
             if now - client.heard > self._limits.idle_s:
                 client.leave("nothing was heard of this page")
-
-    def _drop(self, handler: RequestHandler) -> None:
-        self._strangers.pop(handler, None)
-        if handler.transport is not None:
-            handler.transport.abort()
 
     async def _answer(self, request: web.BaseRequest) -> web.StreamResponse:
         document = self._documents.get(request.path)
@@ -314,7 +242,7 @@ class WebServer:
             max_msg_size=self._limits.message_bytes,
         )
         await opened.prepare(request)
-        self._strangers.pop(request.protocol, None)
+        self._acceptor.admit(request.protocol)
         cutout = request.query.get("background") == "none"
         kind = "cards" if role in PLAYER_ROLES else "cutout" if cutout else "plain"
         client = PageClient(opened, name, cast(Role, role), kind, self._limits, self._clock)
@@ -364,15 +292,3 @@ class WebServer:
             self._tags.append((jpeg, client.page, taken))
             if not self.feed.push(jpeg, taken):
                 raise AppError("this page sends pictures that are no JPEG of a camera's size")
-
-
-def _listen(listener: Listener) -> socket.socket:
-    try:
-        opened = socket.create_server((listener.host, listener.port), backlog=128)
-    except (OSError, OverflowError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise AppError(
-            f"cannot listen at {listener.host}:{listener.port}: {reason}; choose another --port"
-        ) from error
-    opened.setblocking(False)
-    return opened

@@ -12,9 +12,10 @@ import segno
 
 from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
+from cubeling.app.ui.web.acceptor import Listener
 from cubeling.app.ui.web.certificate import FILE, tls_context
 from cubeling.app.ui.web.opening import page_address
-from cubeling.app.ui.web.server import LOOPBACK, Listener, WebServer
+from cubeling.app.ui.web.server import LOOPBACK, WebServer
 
 TOKEN = Token("open-sesame")
 

@@ -15,11 +15,12 @@ import pytest
 from aiohttp import web
 
 from cubeling.app.admission import Token
+from cubeling.app.ui.web.acceptor import Listener
 from cubeling.app.ui.web.limits import WebLimits
 from cubeling.app.ui.web.messages import PICTURE, SOUND, pack, read_said, unpack
 from cubeling.app.ui.web.page import MAX_PAGE_BYTES, document, page
 from cubeling.app.ui.web.place import CAMERA_QUIET_S, CameraPlace
-from cubeling.app.ui.web.server import LOOPBACK, Listener, WebServer
+from cubeling.app.ui.web.server import LOOPBACK, WebServer
 
 WAIT_S = 20.0
 TOKEN = Token("open-sesame")
