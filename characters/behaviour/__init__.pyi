@@ -87,6 +87,7 @@ from cubeling.characters.behaviour.symbolic_gesture import (
     Place as Place,
     SymbolicGesture as SymbolicGesture,
 )
+from cubeling.characters.dialogue.grammar import phrases_of as phrases_of
 from cubeling.characters.dialogue.kernel import (
     Dialogue as Dialogue,
     DialogueTurn as DialogueTurn,
@@ -99,6 +100,7 @@ from cubeling.characters.dialogue.reading import (
 from cubeling.characters.dialogue.script import DialogueScript as DialogueScript
 from cubeling.characters.dialogue.vocabulary import (
     CORE_VOCABULARY as CORE_VOCABULARY,
+    MAX_LINE_CHARS as MAX_LINE_CHARS,
     ConditionKind as ConditionKind,
     Vocabulary as Vocabulary,
     act as act,

@@ -27,6 +27,10 @@ def check_script(script: DialogueScript, line: int) -> None:
         raise _error(script, line, "a dialogue without a unit")
     lines: dict[str, int] = {}
     remembered = _remembered(script)
+    for name, slot in script.slots.items():
+        _check_texts(script, slot, remembered)
+        if name not in remembered:
+            raise _error(script, slot.line, f"no pattern has the slot {{{name}}}")
     for unit in script.units:
         if unit.name in lines:
             raise _error(
@@ -100,14 +104,8 @@ def _unwaiting(unit: Unit, state: str) -> Iterator[UnitTransition]:
 
 def _check_fallback(script: DialogueScript, transition: UnitTransition) -> None:
     """Refuse an answer to everything that is always the same."""
-    is_open = any(
-        isinstance(pattern, WordPattern) and pattern.is_open
-        for condition in transition.conditions
-        if isinstance(condition.argument, Localized)
-        for _, pattern in condition.argument
-    )
     for action in transition.actions:
-        if not is_open or action.kind != "say":
+        if not transition.is_open or action.kind != "say":
             continue
         for language in script.languages:
             if len(set(action.argument.of(language))) < 2:

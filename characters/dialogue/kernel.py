@@ -61,6 +61,9 @@ class DialogueTurn:
     heard: str
     """What it answers; "" for nothing."""
 
+    is_question: bool = False
+    """Whether the script has an answer to that only which fits anything: see `Dialogue.answer`."""
+
 
 @dataclass
 class DialogueState:
@@ -95,6 +98,9 @@ class DialogueState:
 
     waiting: list[Heard] = field(default_factory=list)
     """What was said and is to be answered."""
+
+    asked: Heard | None = None
+    """What somebody else is asked for an answer to; None for nothing."""
 
     due: float = 0.0
     """When conditions are looked at next [s]."""
@@ -148,6 +154,23 @@ class Dialogue:
         waiting = self.state.waiting
         waiting.append(Heard.of(text, typed=typed))
         del waiting[:-MAX_WAITING]
+        if typed:
+            self.state.asked = None  # who says something else does not wait for that answer
+
+    def answer(self, text: str, now: float) -> DialogueTurn:
+        """Return the turn in which a text answers what was asked in one before."""
+        state = self.state
+        heard, state.asked = state.asked, None
+        state.turns += 1
+        state.recent = (*state.recent, text)[-2:]
+        state.quiet_since = now
+        return DialogueTurn(text, state.language, (), (), "" if heard is None else heard.text)
+
+    def take_back(self) -> None:
+        """Let the script answer what was asked: nobody else did."""
+        if self.state.asked is not None:
+            self.state.waiting.insert(0, self.state.asked)
+            self.state.asked = None
 
     def remember_said(self, text: str) -> None:
         """Remember what was heard of the last reply: all of it, or as far as it came."""
@@ -161,6 +184,7 @@ class Dialogue:
         busy: bool = False,
         feelings: Mapping[str, float] = NO_FEELINGS,
         world: Any = None,
+        asks: bool = False,
     ) -> DialogueTurn | None:
         """Advance to a time and return what is done; None for nothing.
 
@@ -174,6 +198,9 @@ class Dialogue:
             Intensities of the 24 emotions, 0…1.
         world
             What the program's own conditions are asked of.
+        asks
+            Whether somebody else may know an answer where the script has one for anything only.
+            The turn is a question then, and `answer` or `take_back` follows.
         """
         state = self.state
         if busy or state.quiet_since is None:
@@ -197,6 +224,10 @@ class Dialogue:
                 continue
             if step is None:
                 break
+            is_vague = step.unit.fallback or step.transition.is_open
+            if asks and is_vague and step.transition.hears and heard is not None and heard.typed:
+                state.asked, state.language = heard, language
+                return DialogueTurn("", language, (), (), heard.text, is_question=True)
             if step.transition.hears and heard is not None:
                 state.language = draft.language = language
                 answered, heard = heard.text, None

@@ -59,6 +59,14 @@ class Heard:
 
 
 @dataclass(frozen=True)
+class Slot:
+    """A place of a pattern whose word is remembered."""
+
+    name: str
+    """What it is remembered as."""
+
+
+@dataclass(frozen=True)
 class WordPattern:
     """A pattern of words: `*` stands for any number of them, `{slot}` for one to remember."""
 
@@ -74,6 +82,9 @@ class WordPattern:
 
     slots: tuple[str, ...]
     """Names of what it remembers."""
+
+    parts: tuple[tuple[str | Slot, ...], ...]
+    """What is before, between and after its stars."""
 
     @classmethod
     def read(cls, text: str) -> "WordPattern":
@@ -94,7 +105,7 @@ class WordPattern:
             raise CharacterError("an empty pattern; write words, or * for any")
         if len(elements) > MAX_PATTERN_WORDS:
             raise CharacterError(f"a pattern of more than {MAX_PATTERN_WORDS} words")
-        parts: list[list[str]] = [[]]  # what is between the stars
+        parts: list[list[str | Slot]] = [[]]  # what is between the stars
         words, slots = list[str](), list[str]()
         for element in elements:
             slot = _SLOT.fullmatch(element)
@@ -104,16 +115,17 @@ class WordPattern:
                 if slot[1] in slots:
                     raise CharacterError(f"{element} twice in the pattern '{text.strip()}'")
                 slots.append(slot[1])
-                parts[-1].append(rf"(?P<{slot[1]}>\S+) ")
+                parts[-1].append(Slot(slot[1]))
             elif element[0] in "{}":
                 raise CharacterError(f"'{element}' is no slot; write {{name}}")
             else:
                 for each in Heard.of(element).plain:
                     words.append(each)
-                    parts[-1].append(re.escape(each) + " ")
+                    parts[-1].append(each)
         if len(parts) == 1 and not parts[0]:
             raise CharacterError(f"the pattern '{text.strip()}' has no word")
-        return cls(text.strip(), re.compile(_expression(parts)), tuple(words), tuple(slots))
+        expression = re.compile(_expression([[*map(_expression_of, part)] for part in parts]))
+        return cls(text.strip(), expression, tuple(words), tuple(slots), tuple(map(tuple, parts)))
 
     @property
     def is_open(self) -> bool:
@@ -133,6 +145,10 @@ class WordPattern:
             slot: heard.words[joined.count(" ", 0, found.start(slot))].strip("'’-")[:MAX_SLOT_CHARS]
             for slot in self.slots
         }
+
+
+def _expression_of(element: str | Slot) -> str:
+    return rf"(?P<{element.name}>\S+) " if isinstance(element, Slot) else re.escape(element) + " "
 
 
 def _expression(parts: list[list[str]]) -> str:

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from cubeling.characters.dialogue.checking import check_script
-from cubeling.characters.dialogue.patterns import Heard, WordPattern
+from cubeling.characters.dialogue.patterns import Heard, WordPattern, plain
 from cubeling.characters.dialogue.script import (
     ANY_LANGUAGE,
     DialogueScript,
@@ -33,7 +33,11 @@ from cubeling.characters.dialogue.script import (
     UnitTransition,
 )
 from cubeling.characters.dialogue.spelling import Spelling, WordSet
-from cubeling.characters.dialogue.vocabulary import CORE_VOCABULARY, Vocabulary
+from cubeling.characters.dialogue.vocabulary import (
+    CORE_VOCABULARY,
+    Vocabulary,
+    localized_texts,
+)
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.speech.tagged_text import TaggedText
 from cubeling.characters.xml_elements import XmlElement, XmlLimits, read_xml
@@ -83,7 +87,8 @@ class _Reader:
         languages = tuple(root.attributes.get("languages", "en").split())
         if not 0 < len(set(languages)) == len(languages) <= MAX_LANGUAGES:
             raise self._error(root, 'languages="en es" names each language once')
-        units = tuple(self._unit(each) for each in root.children)
+        slots = [each for each in root.children if each.tag == "slot"]
+        units = tuple(self._unit(each) for each in root.children if each.tag != "slot")
         script = DialogueScript(
             self._name,
             " ".join(root.attributes.get("summary", "a dialogue").split()).removesuffix("."),
@@ -92,12 +97,30 @@ class _Reader:
             languages,
             units,
             spelling_of(languages, units),
+            {self._name_of(each): self._slot(each) for each in slots},
         )
         check_script(script, root.line)
         return script
 
+    def _slot(self, element: XmlElement) -> ScriptItem:
+        """Return the words that may be heard for a slot."""
+        unknown = element.attributes.keys() - {"name"}
+        if unknown:
+            raise self._error(element, f"<slot> has no '{min(unknown)}'; it has name")
+        try:
+            texts = localized_texts(element)
+        except CharacterError as error:
+            raise self._error(element, f"slot: {error}") from None
+        words: dict[str, tuple[str, ...]] = {}
+        for code, text in texts:
+            listed = map(plain, text.split())
+            words[code] = (*words.get(code, ()), *(word for word in listed if word))
+        if not any(words.values()):
+            raise self._error(element, "a slot without words")
+        return ScriptItem("slot", Localized(words), element.line)
+
     def _unit(self, element: XmlElement) -> Unit:
-        self._expect(element, "unit", "name", "priority", "cyclic", "strong")
+        self._expect(element, "unit", "name", "priority", "cyclic", "strong", "fallback")
         states: dict[str, UnitState] = {}
         for each in element.children:
             state = self._state(each)
@@ -115,6 +138,7 @@ class _Reader:
             int(priority),
             self._flag(element, "cyclic"),
             self._flag(element, "strong"),
+            self._flag(element, "fallback"),
             element.line,
         )
 

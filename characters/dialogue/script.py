@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Generic, TypeVar
 
+from cubeling.characters.dialogue.patterns import WordPattern
 from cubeling.characters.dialogue.spelling import Spelling
 
 Item = TypeVar("Item")
@@ -65,6 +66,16 @@ class UnitTransition:
     line: int
     """Line of the script."""
 
+    @cached_property
+    def is_open(self) -> bool:
+        """Whether it answers whatever is said."""
+        return any(
+            isinstance(pattern, WordPattern) and pattern.is_open
+            for condition in self.conditions
+            if isinstance(condition.argument, Localized)
+            for _, pattern in condition.argument
+        )
+
 
 @dataclass(frozen=True)
 class UnitState:
@@ -101,6 +112,9 @@ class Unit:
 
     strong: bool
     """Whether it comes before all others once it was chosen, as long as it can go on."""
+
+    fallback: bool
+    """Whether its answers fit much that is said, so that a language model may know a better one."""
 
     line: int
     """Line of the script."""
@@ -139,6 +153,9 @@ class DialogueScript:
 
     spelling: Spelling
     """The words that it knows."""
+
+    slots: Mapping[str, ScriptItem]
+    """The words that can be heard for a slot, by its name; typed, it may be any word."""
 
     def place(self, line: int) -> str:
         """Return how messages name a line of it."""

@@ -42,6 +42,12 @@ from cubeling.characters.speech.prosody.strength import (
     psi as psi,
 )
 from cubeling.characters.speech.prosody.stress import stressed_like as stressed_like
+from cubeling.characters.speech.recognition import (
+    RECOGNIZED_LANGUAGE as RECOGNIZED_LANGUAGE,
+    Phrase as Phrase,
+    SpeechRecognizer as SpeechRecognizer,
+    listening_problem as listening_problem,
+)
 from cubeling.characters.speech.saying import say as say
 from cubeling.characters.speech.speech import (
     SILENCE as SILENCE,
