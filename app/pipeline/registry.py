@@ -190,6 +190,7 @@ def make_scenario(
     turns: float = 2.0,
     personality: str | None = None,
     language: str = "",
+    asks_model: bool = False,
 ) -> Scenario:
     """Make a scenario by name; without a cube and a personality it has its own bundled ones.
 
@@ -202,7 +203,7 @@ def make_scenario(
     from cubeling.tracking import CubeModel
 
     loaded = None if personality is None else Personality.load(personality)
-    settings = ScenarioSettings(speed_map, turns, loaded, language)
+    settings = ScenarioSettings(speed_map, turns, loaded, language, asks_model)
     scenario = find_scenario(name)
     model = cube or CubeModel.load(scenario.cube)
     with scenario_errors(scenario):

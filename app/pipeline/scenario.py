@@ -13,8 +13,31 @@ from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.pipeline.table.spoken_line import LEAD, Lines, SpokenLine
 from cubeling.app.pipeline.table.stage_sounds import PlayedSound, SoundClip, SoundSource
 from cubeling.characters import Character, CharacterCommand, RootDelta, meanings_of
+from cubeling.characters.behaviour import DialogueScript
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel
+
+
+@dataclass(frozen=True)
+class Question:
+    """Something said to a character that a language model may have an answer to."""
+
+    number: int
+    """Counts the questions of a scenario from 1."""
+
+    text: str
+    """What the player has said."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a language model answers."""
+
+    number: int
+    """That of the question."""
+
+    text: str
+    """What the character says, with tags; "" if there is no answer."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +62,9 @@ class Inputs:
 
     hush: bool = False
     """Whether the player interrupts the character, as by beginning to type."""
+
+    answer: Answer | None = None
+    """What a language model has answered; None for nothing new."""
 
     lines_of_others: Lines = field(default_factory=dict)
     """What the rest of the cast wants to say from this frame on, by their names."""
@@ -87,6 +113,9 @@ class Reply:
 
     language: str
     """Code of its language; "" for the one in which the character speaks."""
+
+    is_answer: bool = False
+    """Whether a language model has answered it, or it only fills the time until then."""
 
 
 @dataclass(frozen=True)
@@ -143,6 +172,12 @@ class Outcome:
     sounds: tuple[PlayedSound, ...] = ()
     """Sounds that go on now, besides those of the characters."""
 
+    question: Question | None = None
+    """What a language model is asked now; None for nothing new."""
+
+    thinks: bool = False
+    """Whether the character looks aside, as who thinks before speaking."""
+
 
 @dataclass(frozen=True)
 class ScenarioSettings:
@@ -159,6 +194,9 @@ class ScenarioSettings:
 
     language: str = ""
     """Code of the language in which a dialogue begins; "" for its first one."""
+
+    asks_model: bool = False
+    """Whether a language model is asked where a dialogue has no answer of its own."""
 
     def __post_init__(self) -> None:
         check_speed_map(self.speed_map)
@@ -305,6 +343,19 @@ class GesturingScenario(Protocol):
 
     gestures: Mapping[str, str]
     """The place that names each gesture, such as "my.xml:12", by the gesture."""
+
+
+@runtime_checkable
+class ConversingScenario(ListeningScenario, GesturingScenario, Protocol):
+    """A scenario that answers by a script."""
+
+    script: DialogueScript
+    """What it has an answer to."""
+
+    @property
+    def language(self) -> str:
+        """Code of the language that is spoken now."""
+        ...
 
 
 def check_gestures(scenario: Scenario, character: Character) -> None:

@@ -20,7 +20,7 @@ def both_asked(first: Inputs, then: Inputs) -> Inputs:
 
     >>> both_asked(Inputs(clear=True, inside=True), Inputs(scenario="reach", inside=True))
     Inputs(clear=True, scenario='reach', line=None, inside=False, typed='', hush=False, \
-lines_of_others={}, acts=(), marks=(), sounds={})
+answer=None, lines_of_others={}, acts=(), marks=(), sounds={})
     """
     both = Inputs(
         clear=first.clear or then.clear,
@@ -31,6 +31,7 @@ lines_of_others={}, acts=(), marks=(), sounds={})
         acts=(*first.acts, *then.acts),
         marks=(*first.marks, *then.marks),
         sounds={**first.sounds, **then.sounds},
+        answer=then.answer or first.answer,
     )
     return both.with_lines({**first.lines, **then.lines})
 
@@ -132,8 +133,10 @@ class FrameLoop:
             session.screen.notify("The tracker made an error: this frame is lost, the game goes on")
         if drawn:
             self._inputs = both_asked(self._inputs, session.screen.show(step, view))
+        self._inputs = both_asked(self._inputs, session.listener.inputs())
         session.speaker.hear(step)
         self._asked_sounds = step.outcome.asked_sounds
+        session.answerer.hear(step)
         lap("showing")
         if session.sound is not None:
             if not follows:

@@ -20,6 +20,8 @@ from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
 from cubeling.app.session import SessionFile, SessionOptions
+from cubeling.app.speaking.listener import Listener
+from cubeling.app.speaking.model.answerer import Answerer
 from cubeling.app.speaking.recorded import Speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
@@ -74,6 +76,12 @@ class OpenedSession:
 
     stage_sounds: Mapping[str, SoundClip]
     """Sounds of the scenario by their names; none in a replay, which has them recorded."""
+
+    listener: Listener
+    """Hears what the player says."""
+
+    answerer: Answerer
+    """Asks a language model, or nobody."""
 
     robot: RobotLine
     """The robot that shows the emotions, or a stand-in."""
@@ -181,6 +189,9 @@ class OpenedSession:
         asked, replayed = Inputs(), self.replayed
         if replayed is not None and (kept := replayed.inputs.get(timestamp)) is not None:
             asked = replace(kept.asked, sounds=replayed.stage_sounds.get(timestamp, {}))
+        answer = self.answerer.answer()
+        if answer is not None:
+            asked = replace(asked, answer=answer)
         return asked.with_lines(self.speaker.lines(timestamp))
 
     def sounds_of(self, names: Sequence[str]) -> dict[str, SoundClip]:
@@ -193,6 +204,12 @@ class OpenedSession:
         scenario = self.playground.scenario
         listens = isinstance(scenario, ListeningScenario) and scenario.listens
         return listens and not is_replay(self.replayed, self.options)
+
+    def notices(self) -> Iterator[str]:
+        """Yield what the player should know of microphone and model, each once."""
+        for source in (self.listener, self.answerer):
+            while told := source.notice():
+                yield told
 
     def keep_lens(self) -> Path | None:
         """Keep the lens of a live camera if play has measured it; return its file, if any."""
@@ -354,6 +371,8 @@ class OpenedSession:
     def close(self) -> None:
         """Close what may have been exchanged."""
         self.speaker.close()
+        self.listener.close()
+        self.answerer.close()
         self.robot.close()
         self.end_recording()
         if self.source is not self.first_source:
@@ -368,7 +387,13 @@ def is_replay(session: SessionFile | None, options: SessionOptions) -> bool:
 def settings_of(options: SessionOptions) -> ScenarioSettings:
     """Return the user's settings of a scenario; raises AppError or AffectError as reading them."""
     personality = None if options.personality is None else Personality.load(options.personality)
-    return ScenarioSettings(options.speed_map, options.turns, personality, options.talk_language)
+    return ScenarioSettings(
+        options.speed_map,
+        options.turns,
+        personality,
+        options.talk_language,
+        options.asks_model,
+    )
 
 
 def scenario_of(options: SessionOptions, name: str, cube: CubeModel | None = None) -> Scenario:
@@ -380,4 +405,5 @@ def scenario_of(options: SessionOptions, name: str, cube: CubeModel | None = Non
         turns=options.turns,
         personality=options.personality,
         language=options.talk_language,
+        asks_model=options.asks_model,
     )

@@ -14,6 +14,7 @@ from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import (
     CastScenario,
+    ConversingScenario,
     ListeningScenario,
     NamingScenario,
     SoundingScenario,
@@ -37,6 +38,8 @@ from cubeling.app.running.typed_lines import TypedLines
 from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, scenario_cube
 from cubeling.app.session import SessionFile, SessionOptions
+from cubeling.app.speaking.listener import Listener
+from cubeling.app.speaking.model.answerer import Answerer
 from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
@@ -256,6 +259,8 @@ def open_session(
             sound=sound,
             speaker=speaker,
             stage_sounds=stage_sounds,
+            listener=Listener(),
+            answerer=_answerer(options, scenario, replayed, waits=stepped),
             robot=robot,
             second_robot=second,
             wire=wire,
@@ -316,6 +321,24 @@ def open_sound(
     )
     closing.callback(sound.close)
     return sound
+
+
+def _answerer(
+    options: SessionOptions,
+    scenario: Scenario,
+    replayed: SessionFile | None,
+    *,
+    waits: bool,
+) -> Answerer:
+    """Return what asks the language model that the user has named; a replay has its answers."""
+    is_asked = options.model is not None and not is_replay(replayed, options)
+    if not is_asked or not isinstance(scenario, ConversingScenario):
+        return Answerer()
+    from cubeling.app.speaking.model.chat import ChatModel
+
+    assert options.model is not None
+    model = ChatModel(options.model, options.model_name, scenario.script, scenario.gestures)
+    return Answerer(model, waits=waits)
 
 
 def _open_screen(

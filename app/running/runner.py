@@ -99,6 +99,9 @@ class _Runner:
         screen = self._session.screen
         while True:
             self._controls.update()
+            for told in self._session.notices():
+                screen.notify(told)
+                self._say(told)
             if screen.closed:
                 return
             if self._transport.idle:

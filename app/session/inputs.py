@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.scenario import Answer, Inputs
 from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.characters import SpeechIntent
@@ -50,10 +50,13 @@ class RecordedInputs:
     sounds: tuple[str, ...] = ()
     """Names of the sounds that came for the scenario; each is on its channel of `sound_topic`."""
 
+    answer: Answer | None = None
+    """What a language model has answered."""
+
     @property
     def asked(self) -> Inputs:
         """What was asked for and said, without what was spoken."""
-        names = ("clear", "inside", "typed", "hush", "acts")
+        names = ("clear", "inside", "typed", "hush", "acts", "answer")
         return Inputs(**{name: getattr(self, name) for name in names})
 
     @property
@@ -83,4 +86,5 @@ class RecordedInputs:
             inputs.hush,
             inputs.acts,
             tuple(inputs.sounds),
+            inputs.answer,
         )

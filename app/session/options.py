@@ -59,6 +59,15 @@ class SessionOptions:
     talk_language: str = ""
     """Code of the language in which a dialogue begins; "" for its first one."""
 
+    model: str | None = None
+    """The address of a language model, up to and with `/v1`; None for none."""
+
+    model_name: str = "default"
+    """The name by which the address knows the model."""
+
+    asks_model: bool = False
+    """Whether a dialogue waits for a model's answers: also in a replay, which asks none."""
+
     voice: str | None = None
     """The command of the voice; None for eSpeak NG."""
 
@@ -210,6 +219,7 @@ class SessionOptions:
             "turns": f"{self.turns:g}",
             "personality": self.personality or "",
             "talk_language": self.talk_language,
+            "asks_model": "yes" if self.asks_model else "no",
             "look": self.look,
             "inside": self.inside,
             "realism": ",".join(self.realism),
@@ -254,6 +264,7 @@ class SessionOptions:
             turns=numbers["turns"],
             personality=metadata.get("personality") or None,
             talk_language=metadata.get("talk_language", ""),
+            asks_model=metadata.get("asks_model") == "yes",
             look=metadata.get("look", "auto"),
             inside=metadata.get("inside", "auto"),
             realism=tuple(filter(None, realism.split(","))),

@@ -59,6 +59,13 @@ def talk(
         Path | None,
         typer.Option(help="A file with what is typed, a line each, instead of the keyboard."),
     ] = None,
+    microphone: Annotated[
+        list[Path] | None,
+        typer.Option(
+            help="A sound file with something said in English, instead of the keyboard; more than "
+            "once for more. See docs/talking.md.",
+        ),
+    ] = None,
     source: Annotated[
         str | None,
         typer.Option(
@@ -77,6 +84,15 @@ def talk(
     record: RecordOption = None,
     personality: PersonalityOption = None,
     voice: VoiceOption = None,
+    model: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            help="The address of a language model that is asked where the script has no answer of "
+            "its own, such as http://localhost:11434/v1. What you say is sent there.",
+        ),
+    ] = None,
+    model_name: Annotated[str, typer.Option(help="The model's name at that address.")] = "default",
     robot_settings: RobotSettingsOption = None,
     codec: VideoCodecOption = "auto",
     folder: FolderOption = None,
@@ -102,18 +118,29 @@ def talk(
     if script != BUNDLED_DIALOGUE and not script.endswith(SCRIPT_SUFFIX):
         raise AppError(f"'{script}' is no dialogue: give an .xml file, see docs/talking.md")
     check_input(typed, "text")
+    for path in microphone or ():
+        check_input(path, "sound")
+    if model is not None:
+        from cubeling.app.speaking.model.chat import checked_url
+
+        checked_url(model)
+    if typed is not None and microphone:
+        raise AppError("give --typed or --microphone, not both")
     from cubeling.app.running.option_checks import check_inputs, check_output_paths
     from cubeling.app.session import SessionOptions
 
     written = output is not None or record is not None
     options = SessionOptions(
         scenario=script,
-        source=source or (DESK if written or typed else DEFAULT_CAMERA),
+        source=source or (DESK if written or typed or microphone else DEFAULT_CAMERA),
         character=character,
         language=language if language == "none" else None,
         talk_language="" if language == "none" else language,
         personality=personality,
         voice=voice,
+        model=model,
+        model_name=model_name,
+        asks_model=model is not None,
         robot=robot,
         robot_settings=robot_settings,
         record=record,
@@ -126,27 +153,29 @@ def talk(
     check_output_paths(options)
     options, kept = preferences.open(options)
     check_inputs(options)
+    said = None if not microphone else _heard(microphone, script, options.talk_language)
+    lines = _lines(typed) if said is None else said
     if only_text or not (written or has_display()):
         if instruments.asked:
             raise AppError("a talk in the terminal has nothing that other programs could follow")
         from cubeling.app.commands.play.terminal_talk import talk_in_terminal
 
-        talk_in_terminal(find_scenario(script), _lines(typed), options.talk_language)
+        talk_in_terminal(options, lines)
         return
     from cubeling.app.commands.play.progress import play_session
 
     with ExitStack() as closing:
         camera = None
-        if options.windowed and source is None and typed is None:
+        by_itself = written or typed is not None or said is not None
+        if options.windowed and source is None and not by_itself:
             options, camera = open_camera_or_desk(options, closing)
-        lines = _lines(typed) if written or typed else None
         play_session(
             options,
             f"talking: {script}",
             source=camera,
             instruments=closing.enter_context(instruments.open()),
             preferences=kept,
-            typed=lines,
+            typed=lines if by_itself else None,
         )
 
 
@@ -159,6 +188,25 @@ def _lines(typed: Path | None) -> Iterable[str]:
     if typed is not None:
         return read_typed(typed)
     return _asked_lines() if sys.stdin.isatty() else sys.stdin
+
+
+def _heard(files: list[Path], script: str, language: str) -> Iterator[str]:
+    """Return what is understood in sound files, as it is asked for."""
+    from cubeling.app.scenarios.dialogue.scenario import DialogueScenario
+    from cubeling.app.speaking.listener import MAX_LISTEN_S, recognizer_for
+    from cubeling.characters.speech import read_speech
+
+    scenario = find_scenario(script)
+    assert issubclass(scenario, DialogueScenario)
+    recognizer = recognizer_for(scenario.script, language or scenario.script.languages[0])
+
+    def heard(path: Path) -> str:
+        sound = read_speech(path, MAX_LISTEN_S)
+        text = recognizer.hear(sound.samples, sound.rate)
+        typer.echo(f"{path.name}: {text or 'nothing that is in the script'}", err=True)
+        return text
+
+    return map(heard, files)
 
 
 def _asked_lines() -> Iterator[str]:

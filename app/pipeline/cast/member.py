@@ -157,7 +157,9 @@ class CastMember:
             command,
             obstacles=obstacles,
             view=view,
-            gaze=self.attention.update(seen.state, seen.controls, command, company),
+            gaze=self.attention.update(
+                seen.state, seen.controls, command, company, thinks=decision.thinks
+            ),
             emotion=decision.emotion.emotion,
             speech=self.speaking.update(
                 decision.line if decision.keeps_line else decision.line or inputs.line,

@@ -31,6 +31,10 @@ HAND_OFFSET_EDGES = 0.6
 """Where the hand is, from the cube's center towards the player and up, in edges of the cube."""
 
 
+THINKING_ASIDE, THINKING_UP = 0.32, 0.22
+"""How far from the player who thinks looks, to the side and up, as shares of the distance."""
+
+
 @dataclass(frozen=True)
 class Company:
     """The others of the cast, as one of them sees them."""
@@ -77,8 +81,13 @@ class Attention:
         controls: CubeControls,
         command: CharacterCommand,
         company: Company = ALONE,
+        *,
+        thinks: bool = False,
     ) -> Array | None:
-        """Return the point to look at, (3,) in the table frame [m]; None for none."""
+        """Return the point to look at, (3,) in the table frame [m]; None for none.
+
+        Who thinks looks beside the player, and up.
+        """
         table = controls.camera_from_table
         if self.look == "none" or table is None:
             return None
@@ -92,6 +101,10 @@ class Attention:
         if moves or turns or controls.lifted:
             self._last_moved = controls.timestamp
         camera = np.asarray(table_from_camera[:3, 3], float)
+        if thinks:
+            right, up = table_from_camera[:3, 0], -table_from_camera[:3, 1]
+            distance = float(np.linalg.norm(camera))
+            return camera + distance * (THINKING_ASIDE * right + THINKING_UP * up)
         look = self._choose(controls, command, company) if self.look == "auto" else self.look
         if look == "speaker":
             return company.speaker

@@ -7,6 +7,7 @@ from typing import Any
 from cubeling.affect import AffectError
 from cubeling.app.errors import AppError
 from cubeling.app.output_path import dated_file, default_folder, short_path
+from cubeling.app.pipeline.scenario import ConversingScenario
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.playback.choices import Choices
 from cubeling.app.running.playback.transport import Transport
@@ -16,6 +17,7 @@ from cubeling.app.ui.playback.requests import (
     ChangeSpeech,
     Choose,
     ListChoices,
+    Listen,
     MarkMoment,
     NameMark,
     Pause,
@@ -63,6 +65,7 @@ class PlayerControls:
                 choices=self._choices.found,
                 looking=self._choices.looking,
                 listens=session.listens,
+                hears=session.listener.listening,
             )
         )
 
@@ -117,6 +120,17 @@ class PlayerControls:
             number = self._session.name_mark(request.name)
             self._session.screen.notify(f"Mark {number}: {request.name}")
 
+    def _listen(self, _: Listen) -> None:
+        """Begin to listen to the player, or end it."""
+        session = self._session
+        scenario = session.playground.scenario
+        if session.listener.listening:
+            session.listener.end()
+        elif session.listens and isinstance(scenario, ConversingScenario):
+            session.listener.begin(scenario.script, scenario.language)
+        else:
+            session.screen.notify("Nobody listens here: a talk does")
+
     def _begin_recording(self) -> None:
         session, transport = self._session, self._transport
         options = session.options
@@ -149,6 +163,7 @@ HANDLERS: dict[type[SessionRequest], Callable[[PlayerControls, Any], None]] = {
     Record: PlayerControls._record,
     MarkMoment: PlayerControls._mark,
     NameMark: PlayerControls._name_mark,
+    Listen: PlayerControls._listen,
     ChangeSetting: PlayerControls._change_setting,
     ChangeSound: lambda controls, request: controls._session.change_sound(
         request.setting, request.value

@@ -1,6 +1,7 @@
 """A scenario that is a dialogue: what is typed, and what the cube does, is answered."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from textwrap import shorten
 from typing import ClassVar
@@ -9,6 +10,7 @@ from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs, Outcome, Reply, ScenarioSettings
 from cubeling.app.pipeline.table.situation import PLAYER_POSITION, Situation
+from cubeling.app.scenarios.dialogue.asking import PendingQuestion
 from cubeling.app.scenarios.dialogue.cube_words import CubeWords
 from cubeling.app.scenarios.dialogue.reply_progress import ReplyProgress
 from cubeling.app.scenarios.dialogue.vocabulary import TALK_VOCABULARY
@@ -76,7 +78,13 @@ class DialogueScenario:
             )
         self._mood = MoodController(settings.personality or Personality.load(self.personality))
         self._presence = Presence()
+        self._asks_model = settings.asks_model
         self._begin()
+
+    @property
+    def language(self) -> str:
+        """Code of the language that is spoken now."""
+        return self._dialogue.state.language
 
     def adjust(self, settings: ScenarioSettings) -> None:
         """Play on with another personality."""
@@ -86,6 +94,7 @@ class DialogueScenario:
         self._dialogue = Dialogue(self.script, language=self._language, vocabulary=TALK_VOCABULARY)
         self._words = CubeWords(self._cube)
         self._reply = ReplyProgress()
+        self._question = PendingQuestion()
         self._typed, self._typed_at = "", 0.0
         self._listens_until = 0.0
         self._intent, self._acts_until = Intent(hint=HINT), 0.0
@@ -103,16 +112,25 @@ class DialogueScenario:
         hush |= not visible
         self._remember(self._reply.stop(now) if hush else self._reply.finished(now))
         self._listen(inputs, words, now)
-        turn = self._answer(Moment(controls, situation, inputs, self._roles)) if visible else None
-        reply = None
+        self._question.take(inputs.answer, now)
+        moment = Moment(controls, situation, inputs, self._roles)
+        answers = self._question.text is not None
+        turn = self._answer(moment) if visible else None
+        question = reply = None
+        if turn is not None and turn.is_question:
+            question = self._question.ask(turn.heard, now)
         if turn is not None and turn.text:
+            reply = Reply(turn.text, turn.language, answers and not self._question.is_open)
+        elif visible:
+            filler = self._question.filler(self.language, now)
+            reply = Reply(filler, self.language, is_answer=True) if filler else None
+        if reply is not None:
             self._remember(self._reply.stop(now))
             self._reply.ask(now)
-            reply, hush = Reply(turn.text, turn.language), True
+            hush = True
         influences = () if turn is None else turn.influences
-        return self._outcome(
-            Moment(controls, situation, inputs, self._roles), influences, visible, reply, hush
-        )
+        outcome = self._outcome(moment, influences, visible, reply, hush)
+        return replace(outcome, question=question, thinks=self._question.looks_aside(now))
 
     def _remember(self, heard: str) -> None:
         """Let the dialogue remember what was heard of a reply, if anything was."""
@@ -124,6 +142,7 @@ class DialogueScenario:
         if inputs.hush:
             self._listens_until = now + TYPING_S
         if inputs.typed:
+            self._question.drop()
             self._typed, self._typed_at, self._listens_until = inputs.typed, now, now
             self._dialogue.hear(inputs.typed)
         for each in words:
@@ -133,7 +152,20 @@ class DialogueScenario:
         """Let the dialogue take its turn, and do what it says."""
         now = moment.controls.timestamp
         busy = self._reply.is_busy(now) or now < self._listens_until
-        turn = self._dialogue.update(now, busy=busy, feelings=self._mood.intensities, world=moment)
+        if self._question.is_open:
+            text = self._question.text
+            if text is None or self._reply.is_busy(now):
+                return None  # it thinks, or says so to the end
+            self._question.drop()
+            if text:
+                return self._dialogue.answer(text, now)
+            self._dialogue.take_back()
+            asks = False
+        else:
+            asks = self._asks_model
+        turn = self._dialogue.update(
+            now, busy=busy, feelings=self._mood.intensities, world=moment, asks=asks
+        )
         if turn is not None and turn.acts:
             self._intent, self._acts_until = Intent(hint=HINT), now + USUAL_ACTING_S
             for name, text in turn.acts:

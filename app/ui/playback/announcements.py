@@ -46,6 +46,8 @@ class Announcements:
         if status.recording is not None:
             minutes, seconds = divmod(int(status.recording), 60)
             pills.append((f"recording {minutes}:{seconds:02}  ·  R ends it", ANGRY))
+        if status.hears:
+            pills.append(("I hear you  ·  F2 when you have said it", ANGRY))
         if self._seeks_long(status):
             pills.append(("Seeking …", QUIET))
         elif status.paused and status.ending is None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from cubeling.app.ui.playback.requests import (
+    Listen,
     MarkMoment,
     OpenCube,
     Pause,
@@ -59,6 +60,7 @@ BINDINGS: tuple[Binding, ...] = (
     ),
     *_row("Play", "choose a scenario by its picture", {"0": WindowRequest.SCENARIOS}),
     *_row("Play", "look into the cube, and close it", {"I": OpenCube()}),
+    *_row("Play", "say something in English, and end it", {"F2": Listen()}),
     *_row("Play", "menu: scenario, camera, character, robot", {"Tab": WindowRequest.MENU}),
     *_row("Keep", "keep the picture as a PNG file", {"S": WindowRequest.SNAPSHOT}),
     *_row("Keep", "record a session, and end it", {"R": Record()}),

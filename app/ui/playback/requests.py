@@ -88,6 +88,11 @@ class NameMark:
 
 
 @dataclass(frozen=True)
+class Listen:
+    """Listen to what the player says; or, the second time, it has been said."""
+
+
+@dataclass(frozen=True)
 class ListChoices:
     """Find out which cameras, characters and robots there are."""
 
@@ -145,6 +150,7 @@ SessionRequest = (
     | Record
     | MarkMoment
     | NameMark
+    | Listen
     | ListChoices
     | Choose
     | ChangeSetting

@@ -102,6 +102,9 @@ class SessionStatus:
     listens: bool = False
     """Whether what is typed is said to the character."""
 
+    hears: bool = False
+    """Whether what the player says now is heard."""
+
 
 NO_STATUS = SessionStatus()
 """The status of a screen that was told nothing."""

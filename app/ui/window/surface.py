@@ -28,6 +28,7 @@ KEY_NAMES = {
     glfw.KEY_HOME: "Home",
     glfw.KEY_END: "End",
     glfw.KEY_F1: "F1",
+    glfw.KEY_F2: "F2",
     **{glfw.KEY_0 + digit: f"{digit}" for digit in range(10)},
     **{glfw.KEY_KP_0 + digit: f"{digit}" for digit in range(10)},
 }

@@ -1,0 +1,1 @@
+"""A language model that answers what a script has no answer to."""
