@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from cubeling.characters.ik.reaching.upper_body import UpperBody
     from cubeling.characters.ik.reaching.whole_body import WholeBody
     from cubeling.characters.synthesis.gestures.library import GestureLibrary
+    from cubeling.characters.synthesis.idle.pauses import PauseLaw
 
 CHARACTER_READERS: "Registry[Callable[[Path], Character]]" = Registry(
     {
@@ -100,6 +101,9 @@ class Character:
 
     standing: StandingFactory | None = None
     """Makes the motion that it stands with from a seed; None for its idle clip."""
+
+    pauses: "PauseLaw | None" = None
+    """How long it rests between balance shifts, whoever it stands as; None for as in the thesis."""
 
     gestures: "GestureLibrary | None" = None
     """With which its hands beat the rhythm of what it says; None for its head alone."""
@@ -282,6 +286,7 @@ def _with_sidecar(character: Character, path: Path) -> Character:
     found = replace(found, skeleton=skeleton, meshes=meshes, clips=clips)
     skeleton, clips = turn_ahead(found.skeleton, found.anatomy, found.clips)
     found = replace(found, skeleton=skeleton, clips=clips, gestures=gestures_beside(path, skeleton))
+    found = replace(found, pauses=sidecar.pauses)
     recordings = recordings_beside(path, found.skeleton)
     if not recordings:
         return found

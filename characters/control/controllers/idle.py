@@ -39,6 +39,11 @@ def standing_as(character: Character, path: Path) -> Character:
         except CharacterError as error:
             raise CharacterError(f"{path}: {error}") from None
     standing = standing_factory(
-        character.skeleton, character.anatomy, character.clips, recordings, acting=False
+        character.skeleton,
+        character.anatomy,
+        character.clips,
+        recordings,
+        acting=False,
+        pauses=character.pauses,
     )
     return replace(character, standing=standing)

@@ -4,6 +4,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import cast
 
 import cv2
 import numpy as np
@@ -14,7 +15,9 @@ from cubeling.characters import Animator, Character, CharacterCommand, Clip, Pos
 from cubeling.characters.control.controllers.idle import standing_as
 from cubeling.characters.retargeting.feet.leg_ik import place_ankle
 from cubeling.characters.retargeting.rig import Rig
+from cubeling.characters.synthesis.idle.pauses import PauseLaw
 from cubeling.characters.synthesis.idle.recordings import read_standing
+from cubeling.characters.synthesis.idle.standing import StandingPerson
 from cubeling.characters.synthesis.idle.storage import load_person, save_person
 
 RATE = 25.0
@@ -123,6 +126,15 @@ def test_a_character_stands_as_the_person(anna: Path) -> None:
             for t in np.arange(0.0, 30.0, 1 / 6)
         ])  # fmt: skip
         assert least <= np.mean(np.abs(aside) > 0.045) <= most
+
+
+def test_a_character_that_stands_as_the_person_keeps_the_pauses_of_its_file(anna: Path) -> None:
+    human = Character.load("human")
+    assert human.pauses is None
+    for law in (None, PauseLaw(beta=0.5)):
+        make = standing_as(replace(human, pauses=law), anna).standing
+        assert make is not None
+        assert cast(StandingPerson, make(0)).idle.pauses == (law or PauseLaw())
 
 
 @pytest.mark.full
