@@ -31,7 +31,7 @@ ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "licences.md"
 """The document."""
 
-EXTRAS = ("align", "fbx", "lab", "osc", "plots", "reachy", "sound", "voice", "web")
+EXTRAS = ("align", "fbx", "lab", "listen", "osc", "plots", "reachy", "sound", "voice", "web")
 """What a user may add; the extra `dev` is for those who change the program."""
 
 HEADER = "| package | for | licence | its wheel holds |\n|---|---|---|---|"
