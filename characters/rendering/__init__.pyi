@@ -38,6 +38,7 @@ from cubeling.characters.rendering.scene import (
     Focus as Focus,
     HandInFront as HandInFront,
     RoomLight as RoomLight,
+    RoomMap as RoomMap,
     Scene as Scene,
     SceneCharacter as SceneCharacter,
     Softness as Softness,

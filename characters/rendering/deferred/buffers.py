@@ -54,8 +54,10 @@ class GeometryBuffer:
         self.glow_open = _texture(context, size, "f2")
         """Linear RGB that it emits, and the share of the light from all around that its own folds
         let through."""
-        self._layers = (self.normal_id, self.position, self.albedo_rough, self.shade_metal)
-        self._layers += (self.glow_open,)
+        self._layers = (
+            *(self.normal_id, self.position, self.albedo_rough, self.shade_metal),
+            self.glow_open,
+        )
         self.framebuffer = context.framebuffer(self._layers, depth)
         """Draws on all of them."""
 

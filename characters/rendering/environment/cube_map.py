@@ -67,11 +67,11 @@ def pyramid(planes: NDArray[np.uint8]) -> Floats:
     faces.
     """
     faces = _LINEAR[planes].reshape(3 * FACES, FACE_PX, FACE_PX)
-    levels = [faces]
+    levels: list[Floats] = [faces]
     for _ in SIDES[1:]:
         finer = levels[-1]
         pairs = finer[:, 0::2] + finer[:, 1::2]
-        levels.append(0.25 * (pairs[:, :, 0::2] + pairs[:, :, 1::2]))
+        levels.append(np.float32(0.25) * (pairs[:, :, 0::2] + pairs[:, :, 1::2]))
     return np.concatenate([each.reshape(3, -1) for each in levels], axis=1)
 
 

@@ -27,17 +27,10 @@ class CharacterPass(RenderPass):
         if room is not None:
             room.use()
             features |= {ROOM} if room.texture is None else {ROOM, MIRRORED}
-        self._render(
-            frame,
-            layer,
-            frozenset(features),
-            eye=frame.camera_position,
-            to_light=light.to_light,
-            key=light.key,
-            sky=light.sky,
-            ground=light.ground,
-            **({} if room is None else room.uniforms(light)),
-        )
+        uniforms = {} if room is None else room.uniforms(light)
+        uniforms |= {"to_light": light.to_light, "key": light.key, "sky": light.sky}
+        uniforms |= {"ground": light.ground, "eye": frame.camera_position}
+        self._render(frame, layer, frozenset(features), moderngl.DEPTH_TEST, **uniforms)
 
     def _render(
         self,

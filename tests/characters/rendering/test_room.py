@@ -1,19 +1,13 @@
 """The room's light on characters: white in white, from the right side, and no pop."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from cubeling.characters.model.mesh import Material
-from cubeling.characters.rendering import QUALITIES, Stage, target
-from cubeling.characters.rendering.camera_picture.light import (
-    LINEAR_FROM_SRGB,
-    TO_LIGHT,
-    Light,
-    LightEstimator,
-)
+from cubeling.characters.rendering import QUALITIES
+from cubeling.characters.rendering.camera_picture.light import LINEAR_FROM_SRGB, TO_LIGHT, Light
 from cubeling.characters.rendering.environment import room as fading
 from cubeling.characters.rendering.environment.cube_map import (
     directions,
@@ -27,27 +21,15 @@ from cubeling.characters.rendering.environment.reflections import (
     filtered,
     octahedral_directions,
 )
-from tests.characters.rendering.shapes import Still, ball
-from tests.characters.rendering.watch import WatchPass
+from tests.characters.rendering.room_maps import (
+    UNIT,
+    WHITE,
+    even_light,
+    light_of_ball,
+    painted,
+)
 
-UNIT = directions(64)
-WHITE = np.ones((len(UNIT), 3))
 FULL, RICH = QUALITIES["full"], replace(QUALITIES["rich"], effects=frozenset())
-
-
-@dataclass(frozen=True)
-class Painted:
-    """A map of the room."""
-
-    planes: NDArray[np.uint8]
-    centre: NDArray[np.float64]
-    reach: float = 1.0
-
-
-def painted(light):
-    """Return a map of linear light, (texels, 3) RGB."""
-    values = np.rint(np.interp(light, LINEAR_FROM_SRGB, np.arange(256))).astype(np.uint8)
-    return Painted(values.T.reshape(-1, 64), np.array([0.0, 0.08, 0.0]))
 
 
 def with_card(side, colour=(1.0, 0.0, 0.0), size=0.9):
@@ -58,48 +40,14 @@ def with_card(side, colour=(1.0, 0.0, 0.0), size=0.9):
 
 
 @pytest.fixture
-def draw(ctx, view, monkeypatch):
-    """Draw surfaces with no lamp and exact colours: linear light, (height, width, 3), and 0."""
-    white = np.ones(3)
-    monkeypatch.setattr(
-        LightEstimator, "update", lambda *given: Light(0.0 * white, white, white, TO_LIGHT)
-    )
-    monkeypatch.setattr(
-        target,
-        "_texture",
-        lambda context, size: context.texture(size, 4, dtype="f4"),
-    )
-    stages = []
+def draw(ctx, view):
+    """Draw a ball with no lamp: linear light, (height, width, 3), and where it is."""
 
-    def draw_room(material, room, quality=FULL):
-        stage = Stage(ctx, view.image.shape[1::-1])
-        stages.append(stage)
-        stage.quality = quality
-        watch = WatchPass()
-        stage.passes.append(watch)
-        # Above what counts as near the table.
-        stage.draw(
-            replace(view, room=room),
-            [Still((ball(material, at=(0, 0.08, 0), radius=0.04),)).posed()],
-        )
-        layer = watch.frame.layer
-        columns, rows = layer.texels
-        data = layer.target.framebuffer.read((0, 0, columns, rows), components=4, dtype="f4")
-        texels = np.frombuffer(data, np.float32).reshape(rows, columns, 4)
-        return linear(texels[..., 2::-1]), texels[..., 3] > 0
+    def draw_ball(material, room, quality=FULL):
+        return light_of_ball(ctx, view, quality, material, room)
 
-    yield draw_room
-    for stage in stages:
-        stage.release()
-
-
-def linear(shown):
-    """Return the light that is shown as a value, 0…1: the inverse of encoding.glsl."""
-    light = np.linspace(0.0, 1.3, 4000)
-    shoulder = light * 1.06 / (1.0 + 0.12 * light)
-    root = np.sqrt(shoulder)
-    value = 0.82443678 * root + 0.30650353 * np.sqrt(root) - 0.05245525 * shoulder - 0.07884886
-    return np.interp(shown, value, light)
+    with even_light():
+        yield draw_ball
 
 
 @pytest.mark.parametrize("quality", [FULL, RICH], ids=["forward", "deferred"])
@@ -207,6 +155,13 @@ def shown_by(maps, room, now, mirrored=True):
     return lighting.irradiance[0, 0]
 
 
+def mirrored_by(maps, room, now):
+    lighting = maps.update(room, now, True)
+    assert lighting is not None
+    assert lighting.texture is not None
+    return np.frombuffer(lighting.texture.read(), np.float32)
+
+
 def test_a_new_map_fades_in_and_never_back(ctx):
     maps = fading.RoomMaps(ctx)
     dark, bright = painted(np.full_like(WHITE, 0.1)), painted(np.full_like(WHITE, 0.8))
@@ -217,8 +172,7 @@ def test_a_new_map_fades_in_and_never_back(ctx):
     assert values[-1] == pytest.approx(0.8, abs=0.01)
     assert (steps >= 0.0).all()
     assert steps.max() < 1.2 * (values[-1] - before) * 0.04 / fading.FADE_S
-    texture = np.frombuffer(maps.update(bright, 1.3, True).texture.read(), np.float32)
-    assert texture.max() == pytest.approx(values[-1], abs=0.01)
+    assert mirrored_by(maps, bright, 1.3).max() == pytest.approx(values[-1], abs=0.01)
     maps.release()
 
 
@@ -234,13 +188,15 @@ def test_a_map_that_comes_during_a_fade_goes_on_from_what_is_shown(ctx):
 
 
 def test_nothing_is_filtered_where_nothing_mirrors(ctx, monkeypatch):
-    asked = []
+    asked: list[object] = []
     monkeypatch.setattr(fading, "filtered", asked.append)
     monkeypatch.setattr(fading, "ReflectionFilter", asked.append)
     maps = fading.RoomMaps(ctx)
     for number in range(30):
         room = painted(np.full_like(WHITE, 0.1 + 0.02 * number))
-        assert maps.update(room, 0.1 * number, False).texture is None
+        lighting = maps.update(room, 0.1 * number, False)
+        assert lighting is not None
+        assert lighting.texture is None
     assert not asked
 
 
@@ -248,9 +204,7 @@ def test_the_first_mirror_sees_the_newest_map_at_once(ctx):
     maps = fading.RoomMaps(ctx)
     maps.update(painted(np.full_like(WHITE, 0.3)), 0.0, False)
     newest = painted(np.full_like(WHITE, 0.6))
-    texture = maps.update(newest, 0.1, True).texture
-    assert texture is not None
-    assert np.frombuffer(texture.read(), np.float32).max() == pytest.approx(0.6, abs=0.01)
+    assert mirrored_by(maps, newest, 0.1).max() == pytest.approx(0.6, abs=0.01)
     maps.release()
 
 

@@ -1,5 +1,7 @@
 """What light comes from each direction in the room, gathered from the camera's picture."""
 
+from functools import cache
+
 import cv2
 import numpy as np
 
@@ -18,6 +20,7 @@ from cubeling.tracking.appearance.room.cube_map import (
     shrunk,
     solid_angles,
 )
+from cubeling.tracking.appearance.room.standing_things import EmptyTable, StandingThing
 from cubeling.tracking.geometry.arrays import Array, Floats, Image, Indices
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import MIN_DEPTH, Projection
@@ -59,11 +62,18 @@ _SRGB = np.rint(np.interp(np.arange(_STEPS) / (_STEPS - 1), _LINEAR, np.arange(2
 _SRGB_FROM_LINEAR = _SRGB.astype(np.uint8)
 
 
+Seen = tuple[Indices, Floats, Floats]
+"""Texels of the map, what share of each is covered, (n, 1), and by which light, (n, 3)."""
+
+NOTHING: Seen = np.zeros(0, np.intp), np.zeros((0, 1), np.float32), np.zeros((0, 3), np.float32)
+
+
 class RoomMeter:
     """Gathers the light from all directions, from picture to picture.
 
     A pixel shows a place on the table, or on a sphere around it: that place, not the line of sight,
-    tells from which direction its light comes to a character. What the camera has seen from another
+    tells from which direction its light comes to a character. What comes into the picture stands on
+    the table, and is not painted on it. What the camera has seen from another
     pose is remembered. What it never saw has the light of the nearest edges, blurred; above the
     table, so much that a sheet on it gets the light from all around that was measured on paper.
     """
@@ -74,8 +84,10 @@ class RoomMeter:
         self._known: Floats = np.zeros(len(self._light), np.float32)
         self._pose: Array | None = None  # for which `_texels`, `_pixels` and `_shares` hold
         self._texels: Indices = np.zeros(0, np.intp)
-        self._pixels: Floats = np.zeros((0, 2), np.float32)
+        self._pixels: Array = np.zeros((0, 2))
         self._shares: Floats = np.zeros(0, np.float32)
+        self._table = EmptyTable()
+        self._standing: list[Seen] = []
         self._last: Image | None = None  # small picture of the last map
         self._map: EnvironmentMap | None = None
         self._looked = self._renewed = -np.inf
@@ -133,36 +145,68 @@ class RoomMeter:
         """Take what a picture shows into what is known."""
         if self._has_moved(camera_from_table):
             self._aim(camera_from_table)
+            self._table.forget()
         if not len(self._texels):
             return
         if np.isfinite(self._renewed):
             self._known *= np.float32(np.exp(-(now - self._renewed) / MEMORY_S))
         scale = small.shape[1] / self._projection.size[0]
-        pixels = (self._pixels + 0.5) * np.float32(scale) - 0.5
-        seen = cv2.remap(
-            small, pixels[None], None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
-        )
+        pixels = (self._pixels + 0.5) * scale - 0.5
+        things = self._table.find(small)
+        seen = _LINEAR[_sampled(self._table.picture, pixels)[:, ::-1]]
         before = self._known[self._texels]
         share = (self._shares / np.maximum(self._shares, before))[:, None]
-        self._light[self._texels] += share * (_LINEAR[seen[0, :, ::-1]] - self._light[self._texels])
+        self._light[self._texels] += share * (seen - self._light[self._texels])
         self._known[self._texels] = np.maximum(before, self._shares)
+        self._standing = [self._stand(thing, small, scale) for thing in things]
+
+    def _stand(self, thing: StandingThing, small: Image, scale: float) -> Seen:
+        """Return what is seen of something that stands on the table, from the centre."""
+        assert self._pose is not None
+        rotation, origin = self._pose[:3, :3], self._pose[:3, 3]
+        sight = self._projection.rays((thing.foot + 0.5) / scale - 0.5)
+        ray, camera = rotation.T @ np.append(sight, 1.0), -rotation.T @ origin
+        if ray[1] > -1e-6:  # its foot is above the horizon
+            return NOTHING
+        foot = camera - camera[1] / ray[1] * ray
+        # The way from the centre to the upright plane through the foot, turned to the camera.
+        facing = (camera - foot) * (1.0, 0.0, 1.0)
+        unit = _directions()
+        with np.errstate(divide="ignore"):
+            distance = float(facing @ (foot - CENTRE_M)) / (unit @ facing)
+        texels = np.flatnonzero((distance > 0.0) & (distance < _reaches()))
+        shown, pixels, _ = self._in_picture(CENTRE_M + distance[texels, None] * unit[texels])
+        if not len(shown):
+            return NOTHING
+        pixels = (pixels + 0.5) * scale - 0.5
+        share = _sampled(thing.pixels, pixels) / np.float32(255.0)
+        return texels[shown], share[:, None], _LINEAR[_sampled(small, pixels)[:, ::-1]]
 
     def _aim(self, camera_from_table: Array) -> None:
         """Find where in the picture the places are that light comes from."""
         self._pose = camera_from_table.copy()
-        places = _places() @ camera_from_table[:3, :3].T + camera_from_table[:3, 3]
-        ahead = np.flatnonzero(places[:, 2] > MIN_DEPTH)
+        places = CENTRE_M + _reaches()[:, None] * _directions()
+        self._texels, self._pixels, margins = self._in_picture(places)
+        soft = SOFT_EDGE * self._projection.size[0]
+        self._shares = np.minimum(margins / soft, 1.0).astype(np.float32)
+
+    def _in_picture(self, places: Array) -> tuple[Indices, Array, Array]:
+        """Return which places (n, 3) are in the picture, their pixels, and how far from its edge.
+
+        Places are in the table frame [m], pixels those of the camera's picture.
+        """
+        assert self._pose is not None
+        seen = places @ self._pose[:3, :3].T + self._pose[:3, 3]
+        ahead = np.flatnonzero(seen[:, 2] > MIN_DEPTH)
         width, height = self._projection.size
         matrix = self._projection.matrix
         # A lens's polynomial may bend what is far outside of the picture into it.
-        straight = places[ahead, :2] / places[ahead, 2:] * matrix[[0, 1], [0, 1]] + matrix[:2, 2]
+        straight = seen[ahead, :2] / seen[ahead, 2:] * matrix[[0, 1], [0, 1]] + matrix[:2, 2]
         ahead = ahead[_inside(straight, width, height) > -0.1 * width]
-        pixels = self._projection.project(places[ahead])
-        margin = _inside(pixels, width, height)
-        kept = margin > 0.0
-        self._texels = ahead[kept]
-        self._pixels = pixels[kept].astype(np.float32)
-        self._shares = np.minimum(margin[kept] / (SOFT_EDGE * width), 1.0).astype(np.float32)
+        pixels = self._projection.project(seen[ahead])
+        margins = _inside(pixels, width, height)
+        kept = margins > 0.0
+        return ahead[kept], pixels[kept], margins[kept]
 
     def _complete(self, light: MeasuredLight | None, now: float) -> EnvironmentMap | None:
         """Return the map with what is unknown filled; None if nothing is known."""
@@ -173,9 +217,8 @@ class RoomMeter:
         if float(share.max()) < 1e-3:
             return self._map
         known_light = shrunk(known * seen, COARSE_PX)
-        guessed = np.maximum(
-            filled(known_light / np.maximum(share, 1e-6), share[..., 0]), MIN_LIGHT
-        )
+        edges = known_light / np.maximum(share, np.float32(1e-6))
+        guessed = np.maximum(filled(edges, share[..., 0]), np.float32(MIN_LIGHT))
         if light is not None:
             from_above = _from_above()
             around = from_above @ known_light.reshape(-1, 3)
@@ -183,29 +226,49 @@ class RoomMeter:
             gain = np.clip((light.ambient - around) / np.maximum(unseen, 1e-6), *FILL_GAINS)
             high = np.clip(0.5 + 2.0 * directions(COARSE_PX)[:, 1:2], 0.0, 1.0)
             gains = np.asarray(1.0 + high * (gain - 1.0), np.float32).reshape(guessed.shape)
-            guessed = np.maximum(guessed * gains, MIN_LIGHT)
+            guessed = np.maximum(guessed * gains, np.float32(MIN_LIGHT))
         whole = seen * known + enlarged(guessed, side) * (1.0 - known)
+        # What stands there is not remembered, and tells nothing of the walls.
+        texels = whole.reshape(-1, 3)
+        for where, covered, colour in self._standing:
+            texels[where] += covered * (colour - texels[where])
         steps = (np.clip(whole, 0.0, 1.0) * (_STEPS - 1) + 0.5).astype(np.intp)
         planes = _SRGB_FROM_LINEAR[steps].transpose(3, 0, 1, 2).reshape(-1, side)
         return EnvironmentMap(np.ascontiguousarray(planes), CENTRE_M, REACH_M, now)
 
 
+@cache
 def _from_above() -> Array:
     """Return the share of each coarse texel in the light on a sheet on the table, (texels,)."""
     share = solid_angles(COARSE_PX) * np.maximum(directions(COARSE_PX)[:, 1], 0.0)
     return np.asarray(share / share.sum())
 
 
-def _places() -> Array:
-    """Return where the light of each texel comes from, in the table frame, (texels, 3) [m]."""
-    unit = directions(ENVIRONMENT_PX)
+def _sampled(picture: Image, pixels: Array) -> Image:
+    """Return the values of a picture at pixels (n, 2), (n, …)."""
+    columns, rows = (np.ascontiguousarray(each[None], np.float32) for each in pixels.T)
+    found = cv2.remap(picture, columns, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(found, np.uint8)[0]
+
+
+@cache
+def _directions() -> Array:
+    """Return the directions of all texels, (texels, 3)."""
+    return directions(ENVIRONMENT_PX)
+
+
+@cache
+def _reaches() -> Array:
+    """Return how far what is seen in each texel is, (texels,) [m]: on the table, or around it."""
+    unit = _directions()
     below = unit[:, 1] < -CENTRE_M[1] / REACH_M
     distance = np.full(len(unit), REACH_M)
     distance[below] = CENTRE_M[1] / -unit[below, 1]
-    return CENTRE_M + distance[:, None] * unit
+    return distance
 
 
 def _inside(pixels: Array, width: int, height: int) -> Array:
     """Return how far pixels (n, 2) are from the edges of a picture, below 0 outside [px]."""
     x, y = pixels.T
-    return np.minimum(np.minimum(x + 0.5, width - 0.5 - x), np.minimum(y + 0.5, height - 0.5 - y))
+    across, down = np.minimum(x + 0.5, width - 0.5 - x), np.minimum(y + 0.5, height - 0.5 - y)
+    return np.asarray(np.minimum(across, down), np.float64)

@@ -60,7 +60,7 @@ class DeferredLightingPass(RenderPass):
             room.use()
             set_uniforms(
                 triangle.program,
-                table_from_camera=np.linalg.inv(frame.camera_from_table),
+                table_from_camera=np.asarray(np.linalg.inv(frame.camera_from_table), float),
                 room_map=ROOM_UNIT,
                 **room.uniforms(light),
             )

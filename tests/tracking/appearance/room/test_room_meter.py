@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -46,8 +47,9 @@ def grey(value):
     return np.full((SIZE[1], SIZE[0], 3), value, np.uint8)
 
 
-def light_of(found: EnvironmentMap):
+def light_of(found: EnvironmentMap | None):
     """Return the linear light of all texels, (texels, 3) RGB."""
+    assert found is not None
     return LINEAR_FROM_SRGB[found.planes].reshape(3, -1).T
 
 
@@ -73,6 +75,47 @@ def test_what_lies_on_the_table_is_where_it_is_seen_from_the_centre(x, z):
     assert np.degrees(np.arccos(cosine)) < 2.0
 
 
+def with_card(image, x, z):
+    """Return a picture with a card of 10 × 12 cm that stands at a place, turned to the camera."""
+    corners = np.array(
+        [(x - 0.05, 0, z), (x + 0.05, 0, z), (x + 0.05, 0.12, z), (x - 0.05, 0.12, z)]
+    )
+    at = corners @ TABLE[:3, :3].T + TABLE[:3, 3]
+    pixels = np.rint(Projection(LENS).project(at)).astype(np.int32)
+    cv2.fillConvexPoly(image, pixels, (0, 0, 255))
+    return image
+
+
+@pytest.mark.parametrize(("x", "z"), [(-0.16, 0.0), (0.16, -0.05)])
+def test_a_card_that_comes_stands_on_the_table(x, z):
+    meter = RoomMeter(LENS)
+    meter.update(grey(70), TABLE, None, 0.0)
+    light = light_of(meter.update(with_card(grey(70), x, z), TABLE, None, 1.0))
+    red = np.maximum(light[:, 0] - light[:, 1] - 0.1, 0.0) * solid_angles(ENVIRONMENT_PX)
+    wanted = np.array([x, 0.06, z]) - CENTRE_M
+    seen = red @ UNIT
+    cosine = seen @ wanted / np.linalg.norm(seen) / np.linalg.norm(wanted)
+    assert np.degrees(np.arccos(cosine)) < 8.0
+    high = UNIT[red > 0][:, 1].max()  # as high as the card is, as seen from the centre
+    assert high == pytest.approx(0.04 / np.hypot(0.04, np.hypot(x, z)), abs=0.12)
+
+
+def test_a_card_that_was_there_lies_on_the_table_and_one_that_goes_leaves_nothing():
+    meter = RoomMeter(LENS)
+    first = meter.update(grey(70), TABLE, None, 0.0)
+    meter.update(with_card(grey(70), -0.16, 0.0), TABLE, None, 1.0)
+    again = meter.update(grey(70), TABLE, None, 2.0)
+    assert np.abs(light_of(first) - light_of(again)).max() < 0.01
+
+
+def test_light_that_is_switched_on_is_nothing_that_stands():
+    meter = RoomMeter(LENS)
+    meter.update(grey(70), TABLE, None, 0.0)
+    alone = RoomMeter(LENS).update(grey(160), TABLE, None, 1.0)
+    found = meter.update(grey(160), TABLE, None, 1.0)
+    assert np.array_equal(light_of(found), light_of(alone))
+
+
 def test_what_is_far_is_on_the_side_of_the_picture_that_it_is_in():
     image = grey(60)
     image[:40, :120] = 255, 0, 0  # the upper left corner, above the horizon of this camera
@@ -87,6 +130,7 @@ def test_what_is_far_is_on_the_side_of_the_picture_that_it_is_in():
 
 def test_a_room_of_one_colour_is_that_everywhere():
     found = RoomMeter(LENS).update(grey(140), TABLE, None, 0.0)
+    assert found is not None
     assert np.ptp(found.planes) <= 1
     assert abs(int(found.planes[0, 0]) - 140) <= 1
 
@@ -129,6 +173,7 @@ def test_maps_are_no_more_than_two_a_second():
     meter, times = RoomMeter(LENS), []
     for number in range(90):
         found = meter.update(grey(40 + 2 * number), TABLE, None, number / 30)
+        assert found is not None
         if found.timestamp not in times:
             times.append(found.timestamp)
     assert len(times) > 4
@@ -144,7 +189,9 @@ def test_there_is_none_without_a_table_and_one_at_once_with_it():
 def test_a_recording_that_is_wound_back_goes_on():
     meter = RoomMeter(LENS)
     meter.update(grey(90), TABLE, None, 50.0)
-    assert meter.update(grey(200), TABLE, None, 1.0).timestamp == 1.0
+    found = meter.update(grey(200), TABLE, None, 1.0)
+    assert found is not None
+    assert found.timestamp == 1.0
 
 
 def test_a_camera_that_does_not_see_the_table_knows_nothing():
@@ -175,5 +222,6 @@ def test_enlarged_faces_have_no_seams():
 
 def test_planes_of_another_shape_are_refused():
     found = RoomMeter(LENS).update(grey(90), TABLE, None, 0.0)
-    with pytest.raises(ValueError, match="no"):
+    assert found is not None
+    with pytest.raises(ValueError, match="texels"):
         replace(found, planes=found.planes[1:])
