@@ -201,14 +201,14 @@ def card(
     seen = []
     for number in range(count):
         image = carded if appears <= number < goes else plain
-        if busy and appears - 2 <= number < appears:
+        if busy and appears - 4 <= number < appears:
             image = other
         room = meter.update(image, desk.table, desk.light, number / RATE)
         # The light that stands for the lamp and for what is scattered is not the subject.
         view = replace(desk.view(plain, room, number / RATE), softness=None)
         seen.append(lab(stage.draw(view, actor))[drawn])
     stage.release()
-    before, after = seen[appears - 3], seen[goes - 1]
+    before, after = seen[appears - 5], seen[goes - 1]
     change = np.linalg.norm(after - before, axis=1)
     counted = change > CHANGED
     if not counted.any():

@@ -5,6 +5,7 @@ Colours come first: light is (3, texels), of the faces +x, −x, +y, −y, +z, �
 
 from functools import cache
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -66,12 +67,10 @@ def pyramid(planes: NDArray[np.uint8]) -> Floats:
     `planes` are those of `RoomMap`. Each square of four texels has one of their mean in the next
     faces.
     """
-    faces = _LINEAR[planes].reshape(3 * FACES, FACE_PX, FACE_PX)
-    levels: list[Floats] = [faces]
-    for _ in SIDES[1:]:
-        finer = levels[-1]
-        pairs = finer[:, 0::2] + finer[:, 1::2]
-        levels.append(np.float32(0.25) * (pairs[:, :, 0::2] + pairs[:, :, 1::2]))
+    finest = np.asarray(cv2.LUT(planes, _LINEAR), np.float32)
+    sizes = [(side, 3 * FACES * side) for side in SIDES[1:]]
+    smaller = (cv2.resize(finest, size, interpolation=cv2.INTER_AREA) for size in sizes)
+    levels = [finest, *(np.asarray(each, np.float32) for each in smaller)]
     return np.concatenate([each.reshape(3, -1) for each in levels], axis=1)
 
 

@@ -5,6 +5,7 @@ Engelhardt and Dachsbacher, 2008), with a rim of one texel for the filter of the
 moderngl writes no smaller levels of a cube map, and a software driver samples flat textures faster.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -20,11 +21,11 @@ from cubeling.characters.rendering.environment.cube_map import (
 )
 from cubeling.characters.skeleton.pose import Array
 
-TILE_SIDES = (96, 64, 32, 16, 16)
+TILE_SIDES = (96, 48, 24, 16, 16)
 """Sides of the squares for the roughness 0, ¼, ½, ¾ and 1 [texels], without their rims."""
 
-SAMPLES = 32
-"""Directions that each texel takes the mean of, of those that a rough surface mirrors."""
+SAMPLES = (1, 16, 24, 48, 48)
+"""Directions that each texel takes the mean of, of those that a surface of a roughness mirrors."""
 
 PARTS = 6
 """A map is filtered in so many steps, one a picture."""
@@ -40,11 +41,14 @@ TILES = tuple(
 """Side and first row of each square, without its rim."""
 
 
+Image = NDArray[np.uint8]
+
+
 @dataclass(frozen=True)
 class _Taps:
     """Of which texels of a pyramid the texels of a square are means."""
 
-    texels: NDArray[np.int32]
+    texels: NDArray[np.intp]
     """(side², samples)."""
 
     weights: Floats
@@ -72,21 +76,26 @@ class ReflectionFilter:
                 count = tile.shape[1]
                 rows = slice(count * part // PARTS, count * (part + 1) // PARTS)
                 for channel, plane in zip(self._light, tile, strict=True):
-                    plane[rows] = np.take(channel, taps.texels[rows]) @ taps.weights
+                    plane[rows] = np.take(channel, taps.texels[rows], mode="clip") @ taps.weights
             yield
 
     @property
-    def texture(self) -> Floats:
-        """All squares with their rims, (HEIGHT, WIDTH, 3): valid when all is done."""
-        texels = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    def texture(self) -> Image:
+        """All squares with their rims, (HEIGHT, WIDTH, 4): valid when all is done.
+
+        Of linear light, it has the square root, as bytes: a software driver reads them several
+        times as fast as floats.
+        """
+        texels = np.zeros((HEIGHT, WIDTH, 4), np.uint8)
         for tile, (side, first) in zip(self._tiles, TILES, strict=True):
-            square = tile.reshape(3, side, side).transpose(1, 2, 0)
-            texels[first - 1 : first + side + 1, : side + 2] = _rimmed(square)
+            square = np.sqrt(tile).reshape(3, side, side).transpose(1, 2, 0)
+            values = np.asarray(np.float32(255.0) * square + np.float32(0.5), np.uint8)
+            texels[first - 1 : first + side + 1, : side + 2, :3] = _rimmed(values)
         return texels
 
 
-def filtered(light: Floats) -> Floats:
-    """Return all squares of a pyramid at once, (HEIGHT, WIDTH, 3)."""
+def filtered(light: Floats) -> Image:
+    """Return all squares of a pyramid at once, as `ReflectionFilter.texture`."""
     steps = ReflectionFilter(light)
     for _ in range(PARTS):
         steps.step()
@@ -109,7 +118,7 @@ def octahedral_directions(side: int, fineness: int = 1) -> Array:
     return blocks.reshape(side * side, fineness * fineness, 3)
 
 
-def _rimmed(square: Floats) -> Floats:
+def _rimmed(square: Image) -> Image:
     """Return a square with a rim: beyond an edge, an octahedral map goes on at the same edge."""
     rows = np.concatenate([square[:1, ::-1], square, square[-1:, ::-1]])
     ends = rows[::-1, :1], rows[::-1, -1:]
@@ -119,15 +128,16 @@ def _rimmed(square: Floats) -> Floats:
 @cache
 def _taps() -> tuple[_Taps, ...]:
     """Return the taps of each square."""
-    mirror = texels_at(octahedral_directions(TILE_SIDES[0], 2), SIDES[0])
+    mirror = texels_at(octahedral_directions(TILE_SIDES[0], math.isqrt(SAMPLES[0])), SIDES[0])
     quarters = np.full(mirror.shape[1], 1.0 / mirror.shape[1], np.float32)
-    taps = [_Taps(mirror.astype(np.int32), quarters)]
+    taps = [_Taps(mirror, quarters)]
     for number, side in enumerate(TILE_SIDES[1:], 1):
-        taps.append(_rough_taps(octahedral_directions(side)[:, 0], number / (len(TILE_SIDES) - 1)))
+        roughness = number / (len(TILE_SIDES) - 1)
+        taps.append(_rough_taps(octahedral_directions(side)[:, 0], roughness, SAMPLES[number]))
     return tuple(taps)
 
 
-def _rough_taps(towards: Array, roughness: float) -> _Taps:
+def _rough_taps(towards: Array, roughness: float, samples: int) -> _Taps:
     """Return taps of what a surface mirrors into a direction that it faces, (n, 3).
 
     Samples are as dense as the lobe is bright (GGX; Karis, "Real shading in Unreal Engine 4",
@@ -135,8 +145,8 @@ def _rough_taps(towards: Array, roughness: float) -> _Taps:
     Colbert, "Real-time shading with filtered importance sampling", 2008).
     """
     alpha = roughness**2
-    number = np.arange(SAMPLES) + 0.5
-    angle, share = np.pi * (1.0 + np.sqrt(5.0)) * number, number / SAMPLES
+    number = np.arange(samples) + 0.5
+    angle, share = np.pi * (1.0 + np.sqrt(5.0)) * number, number / samples
     cos2 = (1.0 - share) / (1.0 + (alpha**2 - 1.0) * share)
     cos_half, sin_half = np.sqrt(cos2), np.sqrt(1.0 - cos2)
     density = alpha**2 / (np.pi * (cos2 * (alpha**2 - 1.0) + 1.0) ** 2) / 4.0
@@ -149,11 +159,11 @@ def _rough_taps(towards: Array, roughness: float) -> _Taps:
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     frames = np.stack([across, np.cross(towards, across), towards], axis=1)
     vectors = np.einsum("kl,nlc->nkc", local, frames)
-    solid_angle = 1.0 / (SAMPLES * density[kept])
+    solid_angle = 1.0 / (samples * density[kept])
     wanted = np.sqrt(4.0 * np.pi / (6.0 * solid_angle))
     # Finer by half, as the nearest texel is taken.
     level = np.clip(np.ceil(np.log2(SIDES[0] / wanted) - 0.5), 0, len(SIDES) - 1).astype(int)
-    texels = np.empty(vectors.shape[:2], np.int32)
+    texels = np.empty(vectors.shape[:2], np.intp)
     for each, (side, start) in enumerate(zip(SIDES, pyramid_starts(), strict=True)):
         texels[:, level == each] = start + texels_at(vectors[:, level == each], side)
     weights = (cos[kept] / cos[kept].sum()).astype(np.float32)

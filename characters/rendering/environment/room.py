@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass
 
+import cv2
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.characters.rendering.camera_picture.light import Light
-from cubeling.characters.rendering.environment.cube_map import Floats, irradiance, pyramid
+from cubeling.characters.rendering.environment.cube_map import irradiance, pyramid
 from cubeling.characters.rendering.environment.reflections import (
     HEIGHT,
     PARTS,
@@ -67,16 +69,16 @@ class _Prepared:
     """A map, ready to be drawn with."""
 
     irradiance: Array
-    reflections: Floats | None
+    reflections: NDArray[np.uint8] | None
 
     def mix(self, other: "_Prepared", share: float) -> "_Prepared":
         """Return this with a share of another."""
         mixed = None
         if self.reflections is not None and other.reflections is not None:
-            mixed = self.reflections + np.float32(share) * (other.reflections - self.reflections)
+            mixed = cv2.addWeighted(self.reflections, 1.0 - share, other.reflections, share, 0.0)
         return _Prepared(
             self.irradiance + share * (other.irradiance - self.irradiance),
-            other.reflections if mixed is None else mixed,
+            other.reflections if mixed is None else np.asarray(mixed, np.uint8),
         )
 
 
@@ -164,7 +166,7 @@ class RoomMaps:
 
     def _write(self, shown: _Prepared) -> None:
         if self._texture is None:
-            self._texture = self._context.texture((WIDTH, HEIGHT), 3, dtype="f4")
+            self._texture = self._context.texture((WIDTH, HEIGHT), 4)
             self._texture.repeat_x = self._texture.repeat_y = False
             self._written = None
         if shown is not self._written and shown.reflections is not None:

@@ -22,7 +22,7 @@ vec3 light_of_room_near(vec3 n, float above) {
 }
 
 #ifdef MIRRORED
-uniform sampler2D room_map;     // a square for each roughness, see reflections.py
+uniform sampler2D room_map;     // a square for each roughness, see reflections.py: square roots of linear light
 uniform vec2 room_tiles[5];     // its side and its first row
 uniform vec4 room_sphere;       // centre and reach of the map
 
@@ -44,7 +44,8 @@ vec3 mirrored_room(vec3 p, vec3 way, float rough) {
     if (seen.y < 0.0) place -= seen.y * vec2(seen.x < 0.0 ? -1.0 : 1.0, seen.z < 0.0 ? -1.0 : 1.0);
     float level = 4.0 * clamp(rough, 0.0, 1.0);
     int first = min(int(level), 3);
-    return mix(room_tile(place, first), room_tile(place, first + 1), level - float(first));
+    vec3 root = mix(room_tile(place, first), room_tile(place, first + 1), level - float(first));
+    return root * root;
 }
 #endif
 

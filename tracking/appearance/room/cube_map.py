@@ -1,11 +1,15 @@
 """Directions of the texels of a cube map, and filling those that nothing is known of."""
 
 from functools import cache
+from typing import TypeVar
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.tracking.geometry.arrays import Array, Floats, Indices
+
+Number = TypeVar("Number", np.uint8, np.float32)
 
 FACES = 6
 """Faces of a cube map, in OpenGL's order: +x, −x, +y, −y, +z, −z."""
@@ -76,13 +80,6 @@ def texels_at(vectors: Array, side: int) -> Indices:
     return np.asarray((face * side + row) * side + column, np.intp)
 
 
-def shrunk(faces: Floats, side: int) -> Floats:
-    """Return the means of squares of texels, (6, n, n, channels) → (6, side, side, channels)."""
-    step = faces.shape[1] // side
-    blocks = faces.reshape(FACES, side, step, side, step, -1)
-    return np.asarray(blocks.mean(axis=(2, 4)), np.float32)
-
-
 def filled(light: Floats, known: Floats) -> Floats:
     """Return the light that is guessed of all directions from those that are known.
 
@@ -92,30 +89,34 @@ def filled(light: Floats, known: Floats) -> Floats:
     Parameters
     ----------
     light
-        Linear light, (6, COARSE_PX, COARSE_PX, 3).
+        Linear light of coarse texels, (6 · COARSE_PX², 3).
     known
-        How well it is known, 0…1, (6, COARSE_PX, COARSE_PX): not 0 everywhere.
+        How well it is known, 0…1, (6 · COARSE_PX², 1): not 0 everywhere.
 
     Returns
     -------
-    The same everywhere, (6, COARSE_PX, COARSE_PX, 3).
+    The same everywhere, (6 · COARSE_PX², 3).
     """
-    weights = np.asarray(known.reshape(-1), np.float32)
-    sums = _nearness() @ np.column_stack([weights[:, None] * light.reshape(-1, 3), weights])
-    return np.asarray((sums[:, :3] / sums[:, 3:]).reshape(light.shape), np.float32)
+    sums = _nearness() @ np.column_stack([known * light, known])
+    return np.asarray(sums[:, :3] / sums[:, 3:], np.float32)
 
 
-def enlarged(faces: Floats, side: int) -> Floats:
-    """Return coarse light in finer texels, without seams between faces.
+def enlarged(faces: NDArray[Number], side: int) -> NDArray[Number]:
+    """Return coarse texels as finer ones, without seams between faces.
 
-    (6, COARSE_PX, COARSE_PX, 3) → (6, side, side, 3), where `side` is a multiple of `COARSE_PX`.
+    (6 · COARSE_PX², 3) → (6 · side, side, 3), where `side` is a multiple of `COARSE_PX`.
     """
     step = side // COARSE_PX
-    rimmed = faces.reshape(-1, 3)[_rimmed_texels()]
     size = (COARSE_PX + 2) * step, (COARSE_PX + 2) * step
     inner = slice(step, -step)
-    return np.stack(
-        [cv2.resize(each, size, interpolation=cv2.INTER_LINEAR)[inner, inner] for each in rimmed]
+    rimmed = faces[_rimmed_texels()]
+    return np.concatenate(
+        [
+            np.asarray(cv2.resize(each, size, interpolation=cv2.INTER_LINEAR), faces.dtype)[
+                inner, inner
+            ]
+            for each in rimmed
+        ]
     )
 
 

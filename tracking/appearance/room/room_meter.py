@@ -1,9 +1,11 @@
 """What light comes from each direction in the room, gathered from the camera's picture."""
 
 from functools import cache
+from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from cubeling.tracking.appearance.appearance import (
     ENVIRONMENT_PX,
@@ -17,7 +19,6 @@ from cubeling.tracking.appearance.room.cube_map import (
     directions,
     enlarged,
     filled,
-    shrunk,
     solid_angles,
 )
 from cubeling.tracking.appearance.room.standing_things import EmptyTable, StandingThing
@@ -56,16 +57,16 @@ MIN_LIGHT = 0.02
 FILL_GAINS = 0.5, 3.0
 """Limits of the light from unseen directions beside that at the edges of what is seen."""
 
+COARSE_RADIUS = np.radians(11.0)
+"""How far the edge of a coarse texel is from its middle at most [rad]."""
+
 _LINEAR = LINEAR_FROM_SRGB.astype(np.float32)
-_STEPS = 4096  # of linear light, from which the byte of sRGB is looked up
-_SRGB = np.rint(np.interp(np.arange(_STEPS) / (_STEPS - 1), _LINEAR, np.arange(256)))
-_SRGB_FROM_LINEAR = _SRGB.astype(np.uint8)
 
 
-Seen = tuple[Indices, Floats, Floats]
-"""Texels of the map, what share of each is covered, (n, 1), and by which light, (n, 3)."""
+Seen = tuple[Indices, Floats, Image]
+"""Texels of the map, what share of each is covered, (n, 1), and by which sRGB, (n, 3)."""
 
-NOTHING: Seen = np.zeros(0, np.intp), np.zeros((0, 1), np.float32), np.zeros((0, 3), np.float32)
+NOTHING: Seen = np.zeros(0, np.intp), np.zeros((0, 1), np.float32), np.zeros((0, 3), np.uint8)
 
 
 class RoomMeter:
@@ -80,11 +81,11 @@ class RoomMeter:
 
     def __init__(self, intrinsics: Intrinsics) -> None:
         self._projection = Projection(intrinsics)
-        self._light: Floats = np.zeros((FACES * ENVIRONMENT_PX**2, 3), np.float32)
+        self._light: Image = np.zeros((FACES * ENVIRONMENT_PX**2, 3), np.uint8)  # sRGB
         self._known: Floats = np.zeros(len(self._light), np.float32)
         self._pose: Array | None = None  # for which `_texels`, `_pixels` and `_shares` hold
         self._texels: Indices = np.zeros(0, np.intp)
-        self._pixels: Array = np.zeros((0, 2))
+        self._pixels: Floats = np.zeros((0, 2), np.float32)  # of small pictures
         self._shares: Floats = np.zeros(0, np.float32)
         self._table = EmptyTable()
         self._standing: list[Seen] = []
@@ -143,52 +144,61 @@ class RoomMeter:
 
     def _see(self, small: Image, camera_from_table: Array, now: float) -> None:
         """Take what a picture shows into what is known."""
+        scale = small.shape[1] / self._projection.size[0]
         if self._has_moved(camera_from_table):
-            self._aim(camera_from_table)
+            self._aim(camera_from_table, scale)
             self._table.forget()
-        if not len(self._texels):
-            return
         if np.isfinite(self._renewed):
             self._known *= np.float32(np.exp(-(now - self._renewed) / MEMORY_S))
-        scale = small.shape[1] / self._projection.size[0]
-        pixels = (self._pixels + 0.5) * scale - 0.5
+        if not len(self._texels):
+            return
         things = self._table.find(small)
-        seen = _LINEAR[_sampled(self._table.picture, pixels)[:, ::-1]]
-        before = self._known[self._texels]
-        share = (self._shares / np.maximum(self._shares, before))[:, None]
-        self._light[self._texels] += share * (seen - self._light[self._texels])
+        seen, before = _sampled(self._table.picture, self._pixels), self._known[self._texels]
+        share = self._shares / np.maximum(self._shares, before)
+        if (share < 1.0).any():  # it was seen better before
+            old = self._light[self._texels]
+            seen = _bytes(old + share[:, None] * (seen.astype(np.float32) - old))
+        self._light[self._texels] = seen
         self._known[self._texels] = np.maximum(before, self._shares)
         self._standing = [self._stand(thing, small, scale) for thing in things]
+
+    def _aim(self, camera_from_table: Array, scale: float) -> None:
+        """Find where in the picture the places are that light comes from."""
+        self._pose = camera_from_table.copy()
+        places = CENTRE_M + _reaches()[:, None] * _directions()
+        self._texels, pixels, margins = self._in_picture(places)
+        self._pixels = ((pixels + 0.5) * scale - 0.5).astype(np.float32)
+        soft = SOFT_EDGE * self._projection.size[0]
+        self._shares = np.minimum(margins / soft, 1.0).astype(np.float32)
 
     def _stand(self, thing: StandingThing, small: Image, scale: float) -> Seen:
         """Return what is seen of something that stands on the table, from the centre."""
         assert self._pose is not None
         rotation, origin = self._pose[:3, :3], self._pose[:3, 3]
-        sight = self._projection.rays((thing.foot + 0.5) / scale - 0.5)
-        ray, camera = rotation.T @ np.append(sight, 1.0), -rotation.T @ origin
-        if ray[1] > -1e-6:  # its foot is above the horizon
+        outline = (np.vstack([thing.foot, thing.corners]) + 0.5) / scale - 0.5
+        rays = np.column_stack([self._projection.rays(outline), np.ones(5)]) @ rotation
+        camera = -rotation.T @ origin
+        if rays[0, 1] > -1e-6:  # its foot is above the horizon
             return NOTHING
-        foot = camera - camera[1] / ray[1] * ray
-        # The way from the centre to the upright plane through the foot, turned to the camera.
+        foot = camera - camera[1] / rays[0, 1] * rays[0]
+        # It is on the upright plane through the foot, turned to the camera.
         facing = (camera - foot) * (1.0, 0.0, 1.0)
-        unit = _directions()
+        ways = facing @ (foot - camera) / (rays[1:] @ facing)
+        around = camera + ways[:, None] * rays[1:] - CENTRE_M
+        around /= np.linalg.norm(around, axis=1, keepdims=True)
+        middle = around.sum(axis=0) / np.linalg.norm(around.sum(axis=0))
+        wide = np.arccos((around @ middle).min()) + COARSE_RADIUS
+        near = _blocks()[directions(COARSE_PX) @ middle > np.cos(min(wide, np.pi))].ravel()
+        unit = _directions()[near]
         with np.errstate(divide="ignore"):
             distance = float(facing @ (foot - CENTRE_M)) / (unit @ facing)
-        texels = np.flatnonzero((distance > 0.0) & (distance < _reaches()))
-        shown, pixels, _ = self._in_picture(CENTRE_M + distance[texels, None] * unit[texels])
+        kept = np.flatnonzero((distance > 0.0) & (distance < _reaches()[near]))
+        shown, pixels, _ = self._in_picture(CENTRE_M + distance[kept, None] * unit[kept])
         if not len(shown):
             return NOTHING
         pixels = (pixels + 0.5) * scale - 0.5
         share = _sampled(thing.pixels, pixels) / np.float32(255.0)
-        return texels[shown], share[:, None], _LINEAR[_sampled(small, pixels)[:, ::-1]]
-
-    def _aim(self, camera_from_table: Array) -> None:
-        """Find where in the picture the places are that light comes from."""
-        self._pose = camera_from_table.copy()
-        places = CENTRE_M + _reaches()[:, None] * _directions()
-        self._texels, self._pixels, margins = self._in_picture(places)
-        soft = SOFT_EDGE * self._projection.size[0]
-        self._shares = np.minimum(margins / soft, 1.0).astype(np.float32)
+        return near[kept[shown]], share[:, None], _sampled(small, pixels)
 
     def _in_picture(self, places: Array) -> tuple[Indices, Array, Array]:
         """Return which places (n, 3) are in the picture, their pixels, and how far from its edge.
@@ -210,31 +220,48 @@ class RoomMeter:
 
     def _complete(self, light: MeasuredLight | None, now: float) -> EnvironmentMap | None:
         """Return the map with what is unknown filled; None if nothing is known."""
-        side = ENVIRONMENT_PX
-        known = self._known.reshape(FACES, side, side, 1)
-        seen = self._light.reshape(FACES, side, side, 3)
-        share = shrunk(known, COARSE_PX)
+        side, coarse = ENVIRONMENT_PX, (COARSE_PX, FACES * COARSE_PX)
+        known, seen = self._known.reshape(-1, side), self._light.reshape(-1, side, 3)
+        share = _floats(cv2.resize(known, coarse, interpolation=cv2.INTER_AREA)).reshape(-1, 1)
         if float(share.max()) < 1e-3:
             return self._map
-        known_light = shrunk(known * seen, COARSE_PX)
-        edges = known_light / np.maximum(share, np.float32(1e-6))
-        guessed = np.maximum(filled(edges, share[..., 0]), np.float32(MIN_LIGHT))
+        linear = cv2.multiply(cv2.LUT(seen, _LINEAR), cv2.merge([known] * 3))
+        edges = _floats(cv2.resize(linear, coarse, interpolation=cv2.INTER_AREA)).reshape(-1, 3)
+        least = np.float32(MIN_LIGHT)
+        guessed = np.maximum(filled(edges / np.maximum(share, np.float32(1e-6)), share), least)
         if light is not None:
-            from_above = _from_above()
-            around = from_above @ known_light.reshape(-1, 3)
-            unseen = from_above @ ((1.0 - share) * guessed).reshape(-1, 3)
-            gain = np.clip((light.ambient - around) / np.maximum(unseen, 1e-6), *FILL_GAINS)
+            unseen = _from_above() @ ((1.0 - share) * guessed)
+            missing = light.ambient - _from_above() @ edges
+            gain = np.clip(missing / np.maximum(unseen, 1e-6), *FILL_GAINS)
             high = np.clip(0.5 + 2.0 * directions(COARSE_PX)[:, 1:2], 0.0, 1.0)
-            gains = np.asarray(1.0 + high * (gain - 1.0), np.float32).reshape(guessed.shape)
-            guessed = np.maximum(guessed * gains, np.float32(MIN_LIGHT))
-        whole = seen * known + enlarged(guessed, side) * (1.0 - known)
+            guessed = np.maximum(guessed * _floats(1.0 + high * (gain - 1.0)), least)
+        shown = _bytes(np.interp(guessed, LINEAR_FROM_SRGB, np.arange(256.0)))
+        walls = enlarged(shown, side)
+        whole = np.asarray(cv2.blendLinear(seen, walls, known, np.float32(1.0) - known), np.uint8)
         # What stands there is not remembered, and tells nothing of the walls.
         texels = whole.reshape(-1, 3)
         for where, covered, colour in self._standing:
-            texels[where] += covered * (colour - texels[where])
-        steps = (np.clip(whole, 0.0, 1.0) * (_STEPS - 1) + 0.5).astype(np.intp)
-        planes = _SRGB_FROM_LINEAR[steps].transpose(3, 0, 1, 2).reshape(-1, side)
-        return EnvironmentMap(np.ascontiguousarray(planes), CENTRE_M, REACH_M, now)
+            behind = texels[where].astype(np.float32)
+            texels[where] = _bytes(behind + covered * (colour - behind))
+        planes = np.vstack(cv2.split(whole))
+        return EnvironmentMap(np.asarray(planes, np.uint8), CENTRE_M, REACH_M, now)
+
+
+def _floats(values: NDArray[Any]) -> Floats:
+    return np.asarray(values, np.float32)
+
+
+def _bytes(values: Floats | Array) -> Image:
+    """Return the nearest bytes of values from 0 to 255."""
+    return np.asarray(values + np.float32(0.5), np.uint8)
+
+
+def _sampled(picture: Image, pixels: Array | Floats) -> Image:
+    """Return the values of a picture at pixels (n, 2): (n,), or (n, 3) RGB of a BGR picture."""
+    columns, rows = (np.ascontiguousarray(each[None], np.float32) for each in pixels.T)
+    found = cv2.remap(picture, columns, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    colours = found if picture.ndim == 2 else cv2.cvtColor(found, cv2.COLOR_BGR2RGB)
+    return np.asarray(np.asarray(colours, np.uint8)[0])
 
 
 @cache
@@ -244,11 +271,12 @@ def _from_above() -> Array:
     return np.asarray(share / share.sum())
 
 
-def _sampled(picture: Image, pixels: Array) -> Image:
-    """Return the values of a picture at pixels (n, 2), (n, …)."""
-    columns, rows = (np.ascontiguousarray(each[None], np.float32) for each in pixels.T)
-    found = cv2.remap(picture, columns, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    return np.asarray(found, np.uint8)[0]
+@cache
+def _blocks() -> Indices:
+    """Return the numbers of the texels of each coarse one, (6 · COARSE_PX², texels)."""
+    step = ENVIRONMENT_PX // COARSE_PX
+    numbers = np.arange(FACES * ENVIRONMENT_PX**2).reshape(-1, step, COARSE_PX, step)
+    return numbers.transpose(0, 2, 1, 3).reshape(-1, step * step)
 
 
 @cache

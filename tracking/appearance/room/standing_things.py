@@ -37,6 +37,9 @@ class StandingThing:
     foot: Array
     """Column and row of its lowest pixel, (2,)."""
 
+    corners: Array
+    """Columns and rows of the corners of the rectangle around it, (4, 2)."""
+
 
 class EmptyTable:
     """Remembers the table without what has come onto it."""
@@ -55,16 +58,16 @@ class EmptyTable:
         if self.picture.shape != small.shape:
             self.picture, self._age = small.copy(), np.zeros(small.shape[:2], np.uint8)
             return ()
-        change = cv2.absdiff(small, self.picture).max(axis=2)
-        new = cv2.morphologyEx(
-            np.where(change > MIN_DIFFERENCE, 255, 0).astype(np.uint8), cv2.MORPH_CLOSE, CLOSING
-        )
+        blue, green, red = cv2.split(cv2.absdiff(small, self.picture))
+        change = cv2.max(cv2.max(blue, green), red)
+        _, new = cv2.threshold(change, MIN_DIFFERENCE, 255, cv2.THRESH_BINARY)
+        new = cv2.morphologyEx(new, cv2.MORPH_CLOSE, CLOSING)
         if cv2.countNonZero(new) > MAX_NEW * new.size:
             new[:] = 0
-        self._age = np.where(new > 0, np.minimum(self._age, 254) + 1, 0).astype(np.uint8)
-        settled = (new == 0) | (self._age > SETTLING_MAPS)
-        self.picture[settled] = small[settled]
-        return tuple(_things(new))
+        self._age = np.asarray(cv2.bitwise_and(cv2.add(self._age, 1.0), new), np.uint8)
+        new[self._age > SETTLING_MAPS] = 0
+        cv2.copyTo(small, cv2.bitwise_not(new), self.picture)
+        return tuple(_things(np.asarray(new, np.uint8)))
 
 
 def _things(new: Image) -> Iterator[StandingThing]:
@@ -74,7 +77,9 @@ def _things(new: Image) -> Iterator[StandingThing]:
     for label in order.tolist():
         if stats[label, cv2.CC_STAT_AREA] < MIN_AREA * new.size:
             return
-        pixels = np.where(labels == label, 255, 0).astype(np.uint8)
-        row = int(stats[label, cv2.CC_STAT_TOP] + stats[label, cv2.CC_STAT_HEIGHT] - 1)
-        foot = np.array([float(np.flatnonzero(pixels[row]).mean()), float(row)])
-        yield StandingThing(pixels, foot)
+        pixels = np.asarray(cv2.inRange(labels, label, label), np.uint8)
+        x, y, width, height = stats[label, :4].tolist()
+        low = y + height - 1
+        foot = np.array([float(np.flatnonzero(pixels[low]).mean()), float(low)])
+        corners = np.array([(x, y), (x + width - 1, y), (x + width - 1, low), (x, low)], float)
+        yield StandingThing(pixels, foot, corners)
