@@ -11,6 +11,7 @@ import numpy as np
 
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.locomotion.gaits import Gaits
+from cubeling.characters.model.arkit_wrinkles import with_generic_wrinkles
 from cubeling.characters.model.bind_pose import upright_bind_pose
 from cubeling.characters.model.constraints import JointConstraint
 from cubeling.characters.model.facing import turn_ahead
@@ -274,7 +275,11 @@ def _with_sidecar(character: Character, path: Path) -> Character:
     face = sidecar.face
     found = replace(
         character,
-        meshes=character.meshes if face is None else face.on(character.meshes, str(sidecar_path)),
+        meshes=(
+            with_generic_wrinkles(character.meshes)
+            if face is None
+            else face.on(character.meshes, str(sidecar_path))
+        ),
         semantics={**character.semantics, **sidecar.joints},
         plan=sidecar.plan,
         body_layers=sidecar.body_layers,

@@ -14,7 +14,7 @@ uniform float lamp_width;       // [m]
 uniform float nearest_blocker;  // distance from the lamp [m]
 uniform vec2 shadow_range;      // so far behind a surface its shadow begins, and is complete [m]
 #ifdef ON_SURFACE
-uniform vec2 surface_range;     // the same behind where light first comes to an opaque surface [m]
+uniform vec2 surface_range;     // so high above a triangle an opaque surface begins to shadow it, and does so completely [m]
 #endif
 
 const int SHADOW_TAPS = 4;      // along each side of the window
@@ -38,6 +38,7 @@ struct Receiver {
     float away;                 // distance along the lamp's axis, less what its own surface may be off [m]
 #ifdef ON_SURFACE
     vec3 plane;                 // through its triangle: 1 / distance is the product with (tangents, 1); 0: not used
+    float cosine;               // between its normal and the way to the lamp
 #endif
 };
 
@@ -65,7 +66,7 @@ void block(Receiver receiver, vec2 offset, out vec3 distances, out vec3 share) {
     // "Real-time soft shadow mapping by backprojection", 2006): a fold of the skin does not darken what is around it.
     vec2 aside = abs(offset) - 0.5 * max(vec2(lamp_width * (away - entry) / (away * entry)), least_window);
     if (max(aside.x, aside.y) > 0.0) return;
-    vec3 opaque = vec3(clamp((behind - surface_range.x) / (surface_range.y - surface_range.x), 0.0, 1.0));
+    vec3 opaque = vec3(clamp((behind * receiver.cosine - surface_range.x) / (surface_range.y - surface_range.x), 0.0, 1.0));
     distances = mix(distances, vec3(entry), greaterThan(opaque, share));
     share = max(share, opaque);
 #endif
