@@ -26,9 +26,9 @@ CHARACTER_RANGE_TEXELS = (3.0, 6.0)
 """Distances behind a surface from which on it shadows a character, and shadows it completely, in
 texels of the map: less is rounding, as the map has one distance for a whole texel."""
 
-SURFACE_RANGE_TEXELS = (0.25, 1.0)
-"""Heights above a triangle at which an opaque surface begins to shadow it, and shadows it completely,
-in texels: the two are compared where a texel has its distance, so that there is little rounding."""
+SURFACE_RANGE_TEXELS = (0.6, 1.4)
+"""Heights above a triangle at which an opaque surface begins to shadow it, and does so completely, in
+texels: the two are compared where a texel has its distance, so that there is little rounding."""
 
 TABLE_RANGE_TEXELS = (-4.0, -3.0)
 """The same for the table, which is in no map: soles shadow it that sink into it a little."""

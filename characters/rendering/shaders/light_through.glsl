@@ -12,8 +12,12 @@ uniform vec3 through_length;    // way after which 1 / e of it is left, in skin 
 
 const float LEAST_WAY = 1e-3;   // in skin of scale 1: no ear is thinner [m]
 
+const float STEEP = 0.15;       // cosine
+
 vec3 through(vec3 point, vec3 n, float scale) {
-    float falls = max(-dot(n, to_light), 0.0);  // on the other side, whose normal is not known
+    // On the other side, whose normal is not known. Where it is steep to the lamp, the way in a texel of the map is not
+    // that of the point.
+    float falls = max(-dot(n, to_light) - STEEP, 0.0) / (1.0 - STEEP);
     if (falls == 0.0) return vec3(0.0);
     vec3 seen = (lamp_from_point * vec4(point, 1.0)).xyz;
     vec2 at = (seen.xy / seen.z - lamp_area.xy) * lamp_area.zw * vec2(textureSize(blockers, 0)) - 0.5;

@@ -7,8 +7,6 @@
 #include "flat_normal"
 #include "soft_shadow"
 
-uniform float tile_m;           // size of a tile of cells, whose samples differ [m]
-
 out vec4 visible;               // and how much of a tile the penumbra is wide, at most 1
 
 void main() {

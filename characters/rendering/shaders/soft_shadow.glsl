@@ -14,6 +14,7 @@ uniform float lamp_width;       // [m]
 uniform float nearest_blocker;  // distance from the lamp [m]
 uniform vec2 shadow_range;      // so far behind a surface its shadow begins, and is complete [m]
 #ifdef ON_SURFACE
+uniform float tile_m;           // size of a tile of cells, whose samples differ where a shadow is soft [m]
 uniform vec2 surface_range;     // so high above a triangle an opaque surface begins to shadow it, and does so completely [m]
 #endif
 
@@ -77,6 +78,11 @@ vec3 key_left(Receiver receiver, ivec2 texel, out float width) {
     width = 0.0;
     if (receiver.away <= nearest_blocker) return vec3(1.0);
     vec2 offset = tile_offset(texel);
+#ifdef ON_SURFACE
+    vec2 search_offset = vec2(0.5);                     // sharp shadows are not smoothed: what is found must be even
+#else
+    vec2 search_offset = offset;
+#endif
     least_window = LEAST_WINDOW / (lamp_area.zw * vec2(textureSize(blockers, 0)));
 
     // The blockers are looked for again in the penumbra of those that were found: a foot on the table must not get
@@ -87,7 +93,7 @@ vec3 key_left(Receiver receiver, ivec2 texel, out float width) {
         vec2 window = max(vec2(lamp_width * (receiver.away - blocker) / (receiver.away * blocker)), least_window);
         float sum = 0.0, count = 0.0;
         for (int i = 0; i < SHADOW_TAPS * SHADOW_TAPS; ++i) {
-            vec2 tap = tap_at(i, offset);
+            vec2 tap = tap_at(i, search_offset);
 #ifdef ON_SURFACE
             if (search == 0) tap *= 2.0 * abs(tap);     // what is near blocks close to the middle alone
 #endif
@@ -103,6 +109,9 @@ vec3 key_left(Receiver receiver, ivec2 texel, out float width) {
     vec2 window = vec2(lamp_width * (receiver.away - blocker) / (receiver.away * blocker));
     width = window.x * receiver.away;
     window = max(window, least_window);
+#ifdef ON_SURFACE
+    offset = mix(vec2(0.5), offset, min(width / tile_m, 1.0));
+#endif
     vec3 left = vec3(1.0);
     for (int i = 0; i < SHADOW_TAPS * SHADOW_TAPS; ++i) {
         block(receiver, window * tap_at(i, offset), distances, share);

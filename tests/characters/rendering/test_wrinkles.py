@@ -163,6 +163,24 @@ def test_pixels_are_those_of_displaced_skin_seen_from_in_front(ctx, human_maps, 
     assert agreement(ctx, human_maps, intensities).mean_deg < 3.0
 
 
+def test_furrows_that_cross_are_hardly_deeper_than_one():
+    """Two straight furrows of two units cross in the middle of the map."""
+    across = np.abs(np.arange(96) - 47.5)
+    furrow = -np.exp(-0.5 * (across / 3.0) ** 2).astype(np.float32)
+    heights = np.zeros((LAYERS, 96, 96), np.float32)
+    heights[0], heights[3] = furrow[:, None], furrow[None, :]
+    mixer = WrinkleMixer(FaceMaps(heights, np.zeros((96, 96), np.float32), 0.001))
+    shares = np.zeros(LAYERS)
+    shares[[0, 3]] = 1.0
+    mixer.compose(shares)
+    slopes = mixer.texels[..., :2] / 96.0
+    # Depth along the first furrow, by the slopes from its end to the crossing.
+    along = slopes[47, :48, 0].cumsum()
+    assert along[-1] == pytest.approx(1.0 - 2.0**0.25, abs=0.03)
+    beside = slopes[:48, 10, 1].cumsum()  # across it, away from the crossing
+    assert beside[-1] == pytest.approx(-1.0, abs=0.06)
+
+
 MATERIALS: dict[str, dict[str, Any]] = {
     "textured": {"base_color_texture": np.full((4, 4, 4), 200, np.uint8)},
     "bumped": {"normal_texture": np.full((4, 4, 3), (128, 128, 255), np.uint8)},

@@ -9,7 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cubeling.characters.model.mesh import FaceMaps
-from cubeling.characters.rendering.geometry.face_texture import SMOOTHING_TEXELS, WrinkleMixer
+from cubeling.characters.rendering.geometry.face_texture import (
+    CROSSING_POWER,
+    SMOOTHING_TEXELS,
+    WrinkleMixer,
+)
 from cubeling.characters.rendering.programs import SHADER_FOLDER, set_uniforms
 
 Array = NDArray[np.float64]
@@ -165,8 +169,13 @@ def _ellipsoid(grid: tuple[int, int]) -> tuple[Array, Array]:
 
 def _heights(maps: FaceMaps, intensities: Array, grid: tuple[int, int]) -> Array:
     """Return the height of the composed layers at the points of the grid [m]."""
-    total = np.tensordot(intensities, maps.heights.astype(float), 1)
-    smooth = cv2.GaussianBlur(total, (0, 0), SMOOTHING_TEXELS)
+    layers = [cv2.GaussianBlur(each, (0, 0), SMOOTHING_TEXELS) for each in maps.heights]
+    each = np.asarray(intensities)[:, None, None] * np.stack(layers).astype(float)
+    bulges, furrows = (
+        (np.maximum(sign * each, 0.0) ** CROSSING_POWER).sum(axis=0) ** (1.0 / CROSSING_POWER)
+        for sign in (1.0, -1.0)
+    )
+    smooth = bulges - furrows
     height, width = smooth.shape
     at = (_uvs(grid) * [width, height] - 0.5).astype(np.float32)
     cubic = cv2.remap(

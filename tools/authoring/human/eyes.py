@@ -10,7 +10,15 @@ from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.skeleton.pose import Skeleton
 from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, HumanExpression, skin_displacement
 from tools.authoring.human.rig import JOINT_POSITIONS
-from tools.authoring.human.skull import EYE_WHITE, MAROON, SKIN, complexion, face_normals, on_face
+from tools.authoring.human.skull import (
+    EYE_WHITE,
+    MAROON,
+    SKIN,
+    complexion,
+    face_normals,
+    on_face,
+    skin_normals,
+)
 from tools.authoring.modelling.lathe import circle_profile, lathe, loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.sculpt import coated
@@ -122,7 +130,7 @@ def _lids(face: HumanExpression, sign: float, skeleton: Skeleton) -> Mesh:
         rings, up = rings[:, ::-1] * [-1.0, 1.0, 1.0], up[::-1]
     mesh = loft(rings, _lid_colors(rings, up), "head", skeleton)
     of_the_face = np.repeat(np.array([0, 0, 1.0, 0.75, 0.3, *[0] * 6]), POINTS_PER_RING)
-    return blend_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
+    return blend_normals(mesh, skin_normals(mesh.positions.astype(float)), of_the_face)
 
 
 def _lid_rings(angle: Array, face: HumanExpression, sign: float) -> Array:

@@ -18,7 +18,15 @@ from tools.authoring.human.face import (
 from tools.authoring.human.face_map import mapped
 from tools.authoring.human.hair import HAIR, cowlick, hair_parts
 from tools.authoring.human.mouth import MOUTH_SKIN_EXTENT_M, mouth
-from tools.authoring.human.skull import SKIN, complexion, face_normals, head_shape, lining, on_face
+from tools.authoring.human.skull import (
+    SKIN,
+    complexion,
+    face_normals,
+    head_shape,
+    lining,
+    on_face,
+    skin_normals,
+)
 from tools.authoring.human.teeth import teeth_and_tongue
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.meshes import averaged_normals, morphed
@@ -41,7 +49,11 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
         "", [BodyPart(head_shape(), 0.024, (*complexion(), *lining()), soft_skin=0.0)], skeleton
     )
     rest = _behind_the_mouth(skull.positions.astype(float))
-    skull = replace(skull, positions=rest.astype(np.float32))
+    skull = replace(
+        skull,
+        positions=rest.astype(np.float32),
+        normals=skin_normals(skull.positions.astype(float)).astype(np.float32),
+    )
 
     def moved(face: HumanExpression) -> Mesh:
         shifted = rest + skin_displacement(rest, face)

@@ -11,7 +11,14 @@ from tools.authoring.human.face import (
     HumanExpression,
     skin_displacement,
 )
-from tools.authoring.human.skull import MAROON, SKIN, complexion, face_normals, on_face
+from tools.authoring.human.skull import (
+    MAROON,
+    SKIN,
+    complexion,
+    face_normals,
+    on_face,
+    skin_normals,
+)
 from tools.authoring.modelling.lathe import loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.sculpt import coated
@@ -34,7 +41,27 @@ _LIP_WIDTH_M = 0.0085  # how broad they are [m]
 
 def mouth(skeleton: Skeleton) -> Mesh:
     """Return the mouth with the morph targets of expressions and visemes."""
-    return morphed(lambda face: _mouth(face, skeleton), NEUTRAL, EXPRESSIONS)
+    neutral = _mouth(NEUTRAL, skeleton)
+    normals = skin_normals(neutral.positions.astype(float))
+    normals[-CAVITY_RINGS * POINTS_PER_RING :] = [0.0, 0.0, 1.0]  # no light glances off the inside
+    return morphed(
+        lambda face: blend_normals(_mouth(face, skeleton), normals, _skin_share()),
+        NEUTRAL,
+        EXPRESSIONS,
+    )
+
+
+def _skin_share() -> Array:
+    """Return how far each point has the normal of the face, 0…1: wholly at the rim."""
+    share = np.repeat(
+        [[0], [0], [1.0], [0.9], [0.5], [0.15], [0], [0], [0], *[[0.6]] * CAVITY_RINGS],
+        POINTS_PER_RING,
+        axis=1,
+    )
+    # The rings meet at the corners, where triangles are slivers that would glint.
+    corner = np.cos(np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)) ** 6
+    share[2:9] += (0.9 - share[2:9]).clip(0.0) * corner
+    return share.ravel()
 
 
 def _mouth(face: HumanExpression, skeleton: Skeleton) -> Mesh:
@@ -44,11 +71,7 @@ def _mouth(face: HumanExpression, skeleton: Skeleton) -> Mesh:
     under = skin[-1] - [0.0, 0.0, 0.006]
     behind = np.tile([0.0, MOUTH_CENTRE_M[1], 0.05], (POINTS_PER_RING, 1))
     rings = np.stack([behind, under, *skin[::-1], lips, lips, edge, *_cavity(edge, angle)])
-    mesh = loft(rings, _colors(rings), "head", skeleton)
-    normals = face_normals(mesh.positions.astype(float))
-    normals[-CAVITY_RINGS * POINTS_PER_RING :] = [0.0, 0.0, 1.0]  # no light glances off the inside
-    share = [0, 0, 1.0, 0.9, 0.5, 0.15, 0, 0, 0, *[0.6] * CAVITY_RINGS]
-    return blend_normals(mesh, normals, np.repeat(share, POINTS_PER_RING))
+    return loft(rings, _colors(rings), "head", skeleton)
 
 
 def _skin_rings(angle: Array, face: HumanExpression) -> list[Array]:

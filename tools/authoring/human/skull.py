@@ -30,12 +30,18 @@ def bare_skull() -> Shape:
     return Union((skull, jowls), 0.09)
 
 
-def head_shape() -> Shape:
-    """Return the head with nose and ears, and hollows for eyes and mouth."""
+@cache
+def skin_shape() -> Shape:
+    """Return the head with nose and ears."""
     nose = Ellipsoid((0, 1.391, 0.206), (0.024, 0.0195, 0.023), bones=_BONES, color=SKIN)
     ear = Ellipsoid((0.209, 1.41, -0.012), (0.030, 0.052, 0.040), bones=_BONES, color=SKIN)
-    whole = Union((Union((bare_skull(), nose), 0.022), ear, ear.mirrored()), 0.017)
-    return Difference(whole, Union((EYE_HOLLOW, EYE_HOLLOW.mirrored(), MOUTH_HOLLOW)), 0.008)
+    return Union((Union((bare_skull(), nose), 0.022), ear, ear.mirrored()), 0.017)
+
+
+def head_shape() -> Shape:
+    """Return the head with nose and ears, and hollows for eyes and mouth."""
+    hollows = Union((EYE_HOLLOW, EYE_HOLLOW.mirrored(), MOUTH_HOLLOW))
+    return Difference(skin_shape(), hollows, 0.008)
 
 
 def complexion() -> tuple[PaintCoat, ...]:
@@ -69,3 +75,11 @@ def on_face(x: Array, y: Array) -> Array:
 def face_normals(points: Array) -> Array:
     """Return the normals of the bare face at points (n, 3)."""
     return normals_of(bare_skull().distance, points, 0.02)
+
+
+def skin_normals(points: Array) -> Array:
+    """Return the normals of the head without hollows at points (n, 3).
+
+    Pieces of skin that overlap have them where they meet, so that no line shows there.
+    """
+    return normals_of(skin_shape().distance, points, 0.02)

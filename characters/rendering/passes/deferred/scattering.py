@@ -28,7 +28,7 @@ of the light that flat skin would reflect."""
 OPEN_LIMITS = (0.5, 0.7)
 """Open shares of the light from all around in a fold, and on open skin."""
 
-BEND_LIMITS, PROBE_REACH = (0.015, 0.04), 0.4
+BEND_LIMITS, PROBE_REACH = (0.016, 0.042), 0.4
 """How far the mean of two opposite points within this share of the widest level differs from the
 light between them on open skin, as a share of the key light, from which on it is filtered, and
 completely; in folds, less is enough."""
