@@ -117,6 +117,7 @@ OTHERWISE = {
     "characters/formats/gltf/materials.py": "a picture in memory",
     "characters/rendering/programs.py": "a file of the program",
     "characters/speech/audio.py": "FFmpeg opens what `SOUND_FILE` has opened",
+    "characters/speech/recognition.py": "a network for a library that takes no other",
     "cubeling/faces.py": "a file of the program",
     "cubeling/toml_file.py": "a file of the program",
     "tracking/sources/streams/rtsp.py": "an address",

@@ -14,7 +14,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.ui.literal_text import literal_text
 
 if TYPE_CHECKING:
-    from cubeling.app.running.players import CastPublisher
+    from cubeling.app.running.network.players import CastPublisher
 
 BROKER_GROUP = "Other computers, over an MQTT broker"
 """Heading of these options in a help."""
@@ -68,8 +68,8 @@ def publisher(
     if url is None or name is None:
         yield ()
         return
-    from cubeling.app.running.network import Network
-    from cubeling.app.running.players import CastPublisher
+    from cubeling.app.running.network.connection import Network
+    from cubeling.app.running.network.players import CastPublisher
     from cubeling.robot.network import Credentials
 
     with Network(url, site, Credentials(None, password_file, ca)) as network:

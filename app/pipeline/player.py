@@ -7,9 +7,9 @@ import numpy as np
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import distinct_names
+from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.step import PlayerStep, ReplayInputs
 from cubeling.app.pipeline.table.obstacles import Obstacles
-from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.tracking import (
     CubeControls,
     CubeGestures,

@@ -15,6 +15,7 @@ from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.choices import REALISM_CHOICES, ROBOT_NAMES, distinct_names
 from cubeling.app.pipeline.cube_window import CubeWindow
+from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.frame_times import Lap
 from cubeling.app.pipeline.picture_regions import picture_regions
 from cubeling.app.pipeline.player import check_players, make_players
@@ -33,7 +34,6 @@ from cubeling.app.pipeline.step_renderer import DrawnBody, StepRenderer
 from cubeling.app.pipeline.table.attention import Attention
 from cubeling.app.pipeline.table.obstacles import view_of
 from cubeling.app.pipeline.table.situation import SeenCube
-from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.characters import (
     Animator,
     Character,

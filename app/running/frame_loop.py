@@ -7,7 +7,7 @@ from cubeling.app.pipeline.step import ReplayInputs, RobotView, Step
 from cubeling.app.running.events import events_of
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.quality_control import AUTO_QUALITY, QualityControl
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary.summary import Summary
 from cubeling.characters.rendering import QUALITIES
 from cubeling.tracking import Frame
 

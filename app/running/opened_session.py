@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from cubeling.affect import Personality
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.other_cube import cube_for
+from cubeling.app.pipeline.cubes.other_cube import cube_for
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs, ListeningScenario
 from cubeling.app.pipeline.step import ReplayInputs, RobotView
@@ -16,8 +16,8 @@ from cubeling.app.preferences import PreferenceStore
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.kept_lens import LensStore
+from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.robots import RobotLine
-from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.speaking.listener import Listener
@@ -30,7 +30,7 @@ from cubeling.bad_input import BadInputError
 from cubeling.tracking import CubeModel, FrameSource, open_source
 
 if TYPE_CHECKING:
-    from cubeling.app.running.recording import SessionRecording
+    from cubeling.app.running.recording.recording import SessionRecording
     from cubeling.app.sound import SessionSound
 
 
@@ -333,7 +333,7 @@ class OpenedSession:
 
     def record(self, path: Path) -> None:
         """Record from the next frame on; raises AppError if the file cannot be written."""
-        from cubeling.app.running.recording import SessionRecording
+        from cubeling.app.running.recording.recording import SessionRecording
 
         self.recording = SessionRecording(
             path,

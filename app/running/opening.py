@@ -33,9 +33,9 @@ from cubeling.app.running.opened_session import (
     settings_of,
 )
 from cubeling.app.running.option_checks import check_output_paths, check_part
+from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.typed_lines import TypedLines
-from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.scenarios import Scenario, scenario_cube
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.speaking.listener import Listener
@@ -226,7 +226,7 @@ def open_session(
             stage_sounds = open_clips(scenario.sounds)
         recording = None
         if options.record is not None:
-            from cubeling.app.running.recording import SessionRecording
+            from cubeling.app.running.recording.recording import SessionRecording
 
             recording = closing.enter_context(
                 SessionRecording(

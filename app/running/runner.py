@@ -8,11 +8,11 @@ from cubeling.app.interrupts import defer_interrupts
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.clock import Pace
 from cubeling.app.running.frame_loop import WAITING, FrameLoop
-from cubeling.app.running.gap_watch import GapWatch, Say
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.playback.player_controls import PlayerControls
 from cubeling.app.running.playback.transport import Transport
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary.gap_watch import GapWatch, Say
+from cubeling.app.running.summary.summary import Summary
 from cubeling.app.ui.notice import lens_notice, notice
 from cubeling.robot import RobotError
 from cubeling.tracking import Frame, Health, LiveFrames, TrackingError

@@ -21,8 +21,8 @@ class SessionInfo:
     """From the first to the last camera frame [s]; the robot's line may be recorded for longer."""
 
     played: Mapping[str, str]
-    """What was played, resolved: the keys are those of `app.running.provenance.played`. Empty for
-    sessions that say only what was asked for."""
+    """What was played, resolved: the keys are those of `app.running.recording.provenance.played`.
+    Empty for sessions that say only what was asked for."""
 
     labels: SessionLabels
     """Who played, and under which condition, as it was corrected since."""

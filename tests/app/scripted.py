@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline.tracked_cube import TrackedCube
+from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import Progress, run
 from cubeling.app.session import SessionOptions

@@ -22,8 +22,8 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.front_end import FrontEnd
 from cubeling.app.running.opened_session import OpenedSession, open_camera
 from cubeling.app.running.opening import open_session

@@ -25,9 +25,9 @@ from rich.console import Console
 from rich.table import Table
 
 from cubeling.app.errors import AppError
-from cubeling.app.running.gaps import gaps_line
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
+from cubeling.app.running.summary.gaps import gaps_line
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.tracking import TrackingError
 from cubeling.tracking.sources.live import LiveSource

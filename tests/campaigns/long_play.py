@@ -26,8 +26,8 @@ from mcap.records import ChunkIndex
 from rich.console import Console
 from rich.table import Table
 
+from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.step import Step
-from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, session_info

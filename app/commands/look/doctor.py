@@ -291,7 +291,7 @@ def read_for(source: FrameSource, seconds: float) -> None:
 
 def camera_report(uri: str, source: FrameSource) -> str:
     """Return what a camera delivers, and whether it accepted the settings."""
-    from cubeling.app.running.summary import camera_line
+    from cubeling.app.running.summary.summary import camera_line
     from cubeling.tracking import LiveFrames
 
     size = f"{uri}, {source.size[0]}x{source.size[1]}"

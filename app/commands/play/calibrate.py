@@ -196,7 +196,7 @@ def _report_cube(
     """Print how far the cube is from its design, save it if asked to, and say what comes next."""
     import numpy as np
 
-    from cubeling.app.pipeline.other_cube import scenario_for
+    from cubeling.app.pipeline.cubes.other_cube import scenario_for
     from cubeling.tracking import write_cube
     from cubeling.tracking.calibration import measured_cube
 

@@ -20,7 +20,7 @@ from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary.summary import Summary
 from cubeling.app.session import SessionFile, SessionOptions, session_info
 from cubeling.app.ui.notice import focal_length, lens_notice
 from cubeling.app.ui.playback.status import EndCard

@@ -20,7 +20,7 @@ from cubeling.app.ui.literal_text import literal_text
 from cubeling.robot.network import ANY_NAME, DEFAULT_SITE, HOLD_S, MAX_AGE_S
 
 if TYPE_CHECKING:
-    from cubeling.app.running.bridge import Bridge
+    from cubeling.app.running.network.bridge import Bridge
     from cubeling.robot.network import Member
 
 STEP_EVERY_S = 0.02
@@ -99,8 +99,8 @@ def bridge(
             "without --mqtt there are no other members: give both --robot and --play, "
             "or a broker with --mqtt URL"
         )
-    from cubeling.app.running.bridge import Bridge
-    from cubeling.app.running.network import Network
+    from cubeling.app.running.network.bridge import Bridge
+    from cubeling.app.running.network.connection import Network
     from cubeling.robot.network import Credentials
 
     credentials = Credentials(user, password_file, ca, cert, key)

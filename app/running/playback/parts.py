@@ -10,8 +10,8 @@ from cubeling.app.errors import AppError
 from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.running.playback.transport import Transport
+from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.robots import RobotLine
-from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.ui.playback.status import MenuChoice
 from cubeling.characters import Character, load_to_play
 from cubeling.robot import serial_ports

@@ -19,9 +19,9 @@ from cubeling.affect import Emotion
 from cubeling.app.commands.robots.bridge import EventPrinter
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import EmotionTarget
-from cubeling.app.running.bridge import Bridge, RecordedPlayer, patterns_of
-from cubeling.app.running.network import Network
-from cubeling.app.running.players import CastPublisher, PlayerPublisher
+from cubeling.app.running.network.bridge import Bridge, RecordedPlayer, patterns_of
+from cubeling.app.running.network.connection import Network
+from cubeling.app.running.network.players import CastPublisher, PlayerPublisher
 from cubeling.app.session import Recorder
 from cubeling.app.session.encoding import encode
 from cubeling.app.ui.roster import table

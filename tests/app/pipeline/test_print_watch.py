@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cubeling.app.pipeline.cubes.print_watch import SHOWN_S, PrintWatch, fault_advice
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.pipeline.print_watch import SHOWN_S, PrintWatch, fault_advice
 from cubeling.tracking import CubeModel, CubeState, Frame, PrintFault, cube_with
 from tests.tracking.drawn import CAMERA, held, photograph, scene
 

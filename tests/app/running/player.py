@@ -4,7 +4,7 @@ from collections import deque
 
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.opened_session import OpenedSession
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary.summary import Summary
 from cubeling.app.session.encoding import encode
 from cubeling.app.ui.screen import NullScreen
 

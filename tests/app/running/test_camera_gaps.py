@@ -11,12 +11,12 @@ import pytest
 from rich.console import Console
 
 from cubeling.app.pipeline.step import RobotView
-from cubeling.app.running.gap_watch import MAX_LINES, GapWatch
-from cubeling.app.running.gaps import Gap
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.running.runner import run
-from cubeling.app.running.summary import MAX_SAMPLES, Summary
+from cubeling.app.running.summary.gap_watch import MAX_LINES, GapWatch
+from cubeling.app.running.summary.gaps import Gap
+from cubeling.app.running.summary.summary import MAX_SAMPLES, Summary
 from cubeling.app.session import Recorder, SessionOptions, messages, session_info
 from cubeling.app.ui.cards.overlay import notice_card
 from cubeling.app.ui.notice import Notice, notice

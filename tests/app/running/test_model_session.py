@@ -5,8 +5,8 @@ import sys
 import numpy as np
 import pytest
 
+from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.scenario import Answer, Inputs
-from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions

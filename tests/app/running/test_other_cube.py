@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline.cube_advice import FOLD_IT, FOLD_IT_SHOWN_S
-from cubeling.app.pipeline.other_cube import LOOK_AFTER_S, advice, cube_for
+from cubeling.app.pipeline.cubes.advice import FOLD_IT, FOLD_IT_SHOWN_S
+from cubeling.app.pipeline.cubes.other_cube import LOOK_AFTER_S, advice, cube_for
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import ReplayInputs

@@ -2,8 +2,8 @@
 
 import pytest
 
-from cubeling.app.running.network import Network
-from cubeling.app.running.players import WEIGHT_RESTS_S, PlayerPublisher
+from cubeling.app.running.network.connection import Network
+from cubeling.app.running.network.players import WEIGHT_RESTS_S, PlayerPublisher
 from cubeling.characters import ActionIntent, CharacterCommand
 from cubeling.robot.network import Credentials
 

@@ -8,8 +8,8 @@ import pytest
 from cubeling.app.running import opening
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.opening import open_session
+from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.runner import run
-from cubeling.app.running.wire_tap import WireTap
 from cubeling.app.session import SessionOptions, messages, session_info
 from cubeling.robot import SimulatedPort
 from cubeling.tracking import TrackingError, open_source

@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs, Reply
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
-from cubeling.app.pipeline.tracked_cube import TrackedCube
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.typed_lines import TypedLines

@@ -9,7 +9,7 @@ import pytest
 from cubeling.app.running.frame_loop import FrameLoop
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary.summary import Summary
 from cubeling.app.session import SessionOptions, messages
 from cubeling.app.session.encoding import decode
 from cubeling.app.speaking import opening, voices

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from cubeling.app import cli
-from cubeling.app.running.summary import RobotFigures, Summary
+from cubeling.app.running.summary.summary import RobotFigures, Summary
 from cubeling.app.ui import roster
 from cubeling.robot import LogLine
 from cubeling.robot.network import Member

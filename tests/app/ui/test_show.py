@@ -12,9 +12,9 @@ from rich.console import Console
 
 from cubeling.app.commands.play import demo
 from cubeling.app.errors import AppError
+from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.step import RobotView
-from cubeling.app.pipeline.tracked_cube import TrackedCube
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary.summary import Summary
 from cubeling.app.ui import video_file
 from cubeling.app.ui.canvas import Canvas, rounded_rectangle
 from cubeling.app.ui.cards.overlay import overlay

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cubeling.app.pipeline.other_cube import advice
+from cubeling.app.pipeline.cubes.other_cube import advice
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView
 from cubeling.app.ui.playback.requests import Choose, MarkMoment, Record

@@ -8,8 +8,8 @@ from typing import Any
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.pipeline.table.spoken_line import LEAD
-from cubeling.app.running.network import Network
-from cubeling.app.running.players import CastPublisher
+from cubeling.app.running.network.connection import Network
+from cubeling.app.running.network.players import CastPublisher
 from cubeling.app.session import SessionFile, session_info
 from cubeling.characters import CharacterCommand
 from cubeling.robot import Closeable, connect

@@ -8,7 +8,7 @@ from cubeling.app.pipeline.scenario import EmotionTarget, Inputs
 from cubeling.app.pipeline.step import Step
 from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.app.running.instrument import Instrument
-from cubeling.app.running.network import Network
+from cubeling.app.running.network.connection import Network
 from cubeling.characters import Character, CharacterCommand
 from cubeling.robot import RobotError
 from cubeling.robot.network import FURTHER, MAX_AGE_S, BusClient, Player

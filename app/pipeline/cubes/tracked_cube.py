@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Sequence
 
-from cubeling.app.pipeline.cube_advice import CubeAdvice
+from cubeling.app.pipeline.cubes.advice import CubeAdvice
 from cubeling.app.pipeline.scenario_errors import described_error
 from cubeling.tracking import (
     CubeModel,

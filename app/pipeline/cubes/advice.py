@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from cubeling.app.pipeline.other_cube import OtherCube, advice
-from cubeling.app.pipeline.print_watch import PrintWatch, fault_advice
+from cubeling.app.pipeline.cubes.other_cube import OtherCube, advice
+from cubeling.app.pipeline.cubes.print_watch import PrintWatch, fault_advice
 from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics
 
 if TYPE_CHECKING:

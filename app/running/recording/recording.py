@@ -8,8 +8,8 @@ from pathlib import Path
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Step
-from cubeling.app.running.provenance import played
-from cubeling.app.running.wire_tap import WireTap
+from cubeling.app.running.recording.provenance import played
+from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.session import (
     Recorder,
     SessionOptions,

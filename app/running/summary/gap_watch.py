@@ -5,9 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from cubeling.app.pipeline.step import RobotView
-from cubeling.app.running.gaps import Gap
 from cubeling.app.running.opened_session import OpenedSession
-from cubeling.app.running.summary import Summary
+from cubeling.app.running.summary.gaps import Gap
+from cubeling.app.running.summary.summary import Summary
 
 Say = Callable[[str], None]
 """Tells the user something in one line, at once."""

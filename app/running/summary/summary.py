@@ -12,7 +12,7 @@ from rich.text import Text
 
 from cubeling.app.counted import quantity
 from cubeling.app.pipeline.step import RobotView, Step
-from cubeling.app.running.gaps import Gap, gaps_line
+from cubeling.app.running.summary.gaps import Gap, gaps_line
 from cubeling.app.ui.literal_text import literal_text
 from cubeling.robot import LogLine, RobotError
 from cubeling.tracking import Health, TrackingError

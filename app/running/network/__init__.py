@@ -1,0 +1,1 @@
+"""The session on the network: its players, and robots that follow them."""

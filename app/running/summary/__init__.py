@@ -1,0 +1,1 @@
+"""The summary of a session: its figures, and the gaps in it."""
