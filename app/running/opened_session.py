@@ -156,7 +156,8 @@ class OpenedSession:
         if not inputs.acts:
             return inputs
         admitted = []
-        latest = {(act.kind, act.who): act for act in inputs.acts}
+        # A wizard's acts are all kept, as they are counted: their notes tell them apart.
+        latest = {(act.kind, act.who, act.note): act for act in inputs.acts}
         for act in latest.values():
             reason = self.playground.cast.refusal(act)
             if not reason:
