@@ -1,5 +1,6 @@
 """The wizard's desk: acts with delays and errors, in the session, in its replay, and on a page."""
 
+import asyncio
 import json
 import urllib.error
 import urllib.request
@@ -20,6 +21,8 @@ from cubeling.app.session.acts import wizard_acts
 from cubeling.app.session.inputs import RecordedInputs
 from cubeling.app.ui.local_pages import LocalPages
 from cubeling.app.ui.screen import NullScreen
+from cubeling.characters import Character
+from tests.bench.web.chromium import chromium, program
 
 PLAN = WizardPlan(cues=("greets", "shaken"), say=("Hello!",), emotions=("happy",))
 
@@ -200,8 +203,6 @@ def test_the_page_is_for_who_knows_its_address_and_says_what_is_wrong(desk, cloc
 
 
 def test_buttons_come_from_a_file_or_from_what_the_character_can_do(tmp_path):
-    from cubeling.characters import Character
-
     path = tmp_path / "desk.toml"
     path.write_text('say = ["Hi"]\nactions = []\n[[place]]\nname = "left"\nx_cm = -10\nz_cm = 0\n')
     vleo = Character.load("vleo")
@@ -219,3 +220,47 @@ def test_buttons_come_from_a_file_or_from_what_the_character_can_do(tmp_path):
         path.write_text(text)
         with pytest.raises(AppError, match=words):
             read_wizard_plan(path)
+
+
+ALL = "[...document.querySelectorAll"
+
+
+@pytest.mark.slow(reason="starts a browser")
+@pytest.mark.full
+@pytest.mark.skipif(program() is None, reason="there is no Chromium")
+def test_a_browser_has_the_buttons_and_takes_clicks_keys_and_places(desk, clock):
+    vleo = Character.load("vleo")
+    desk.begin([vleo])
+    desk._followed = clock.now
+
+    async def use():
+        async with chromium() as browser:
+            tab = await browser.tab()
+            await tab.open(desk.address)
+            await tab.until("document.querySelectorAll('#buttons button').length > 20")
+            press = "document.dispatchEvent(new KeyboardEvent('keydown', {key: '%s'}))"
+            await tab.run(press % " ")
+            await tab.until("document.querySelectorAll('#acts li').length == 1")
+            await tab.run(press % "1")
+            await tab.until("document.querySelectorAll('#acts li').length == 2")
+            await tab.run(f"{ALL}('button')].find(b => b.textContent == 'shout').click()")
+            await tab.until("document.querySelectorAll('#acts li').length == 3")
+            # The middle of the right half of the table: 16 cm to the right.
+            await tab.run(
+                "{ const b = find('table').getBoundingClientRect(); find('table').dispatchEvent("
+                "new MouseEvent('click', {clientX: b.left + 0.75 * b.width, "
+                "clientY: b.top + 0.5 * b.height, bubbles: true})) }"
+            )
+            await tab.until("document.querySelectorAll('#acts li').length == 4")
+            await tab.run(
+                "document.querySelectorAll('#acts li')[1].querySelector('button').click()"
+            )
+            await tab.until("document.querySelectorAll('#acts .undone').length == 1")
+            assert not [each for each in tab.log if "exception" in each]
+
+    asyncio.run(use())
+    assert [act.kind for act in desk._waiting] == ["cue", "say", "action", "go", "undo"]
+    cue, say, action, go, undo = desk._waiting
+    assert (cue.text, say.text, action.text) == ("greets", "Hello!", "shout")
+    assert go.place == pytest.approx((0.16, 0.0), abs=0.01)
+    assert undo.note.number == action.note.number
