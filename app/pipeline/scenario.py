@@ -19,7 +19,7 @@ from cubeling.tracking import CubeControls, CubeModel
 
 
 @dataclass(frozen=True)
-class Question:
+class ModelQuestion:
     """Something said to a character that a language model may have an answer to."""
 
     number: int
@@ -30,7 +30,7 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Answer:
+class ModelAnswer:
     """What a language model answers."""
 
     number: int
@@ -63,7 +63,7 @@ class Inputs:
     hush: bool = False
     """Whether the player interrupts the character, as by beginning to type."""
 
-    answer: Answer | None = None
+    answer: ModelAnswer | None = None
     """What a language model has answered; None for nothing new."""
 
     lines_of_others: Lines = field(default_factory=dict)
@@ -172,7 +172,7 @@ class Outcome:
     sounds: tuple[PlayedSound, ...] = ()
     """Sounds that go on now, besides those of the characters."""
 
-    question: Question | None = None
+    question: ModelQuestion | None = None
     """What a language model is asked now; None for nothing new."""
 
     thinks: bool = False

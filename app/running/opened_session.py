@@ -20,7 +20,7 @@ from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
 from cubeling.app.session import SessionFile, SessionOptions
-from cubeling.app.speaking.listener import Listener
+from cubeling.app.speaking.listener import PushToTalk
 from cubeling.app.speaking.model.answerer import Answerer
 from cubeling.app.speaking.recorded import Speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
@@ -77,7 +77,7 @@ class OpenedSession:
     stage_sounds: Mapping[str, SoundClip]
     """Sounds of the scenario by their names; none in a replay, which has them recorded."""
 
-    listener: Listener
+    listener: PushToTalk
     """Hears what the player says."""
 
     answerer: Answerer

@@ -38,7 +38,7 @@ from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.typed_lines import TypedLines
 from cubeling.app.scenarios import Scenario, scenario_cube
 from cubeling.app.session import SessionFile, SessionOptions
-from cubeling.app.speaking.listener import Listener
+from cubeling.app.speaking.listener import PushToTalk
 from cubeling.app.speaking.model.answerer import Answerer
 from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
@@ -259,7 +259,7 @@ def open_session(
             sound=sound,
             speaker=speaker,
             stage_sounds=stage_sounds,
-            listener=Listener(),
+            listener=PushToTalk(),
             answerer=_answerer(options, scenario, replayed, waits=stepped),
             robot=robot,
             second_robot=second,

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from cubeling.app.pipeline.scenario import Answer, Inputs
+from cubeling.app.pipeline.scenario import Inputs, ModelAnswer
 from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.pipeline.table.spoken_line import LEAD
 from cubeling.characters import SpeechIntent
@@ -50,7 +50,7 @@ class RecordedInputs:
     sounds: tuple[str, ...] = ()
     """Names of the sounds that came for the scenario; each is on its channel of `sound_topic`."""
 
-    answer: Answer | None = None
+    answer: ModelAnswer | None = None
     """What a language model has answered."""
 
     @property

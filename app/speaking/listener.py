@@ -70,7 +70,7 @@ def recognizer_for(script: DialogueScript, language: str) -> SpeechRecognizer:
         return SpeechRecognizer(phrases_of(script, language), voice)
 
 
-class Listener:
+class PushToTalk:
     """Listens while the player asks for it. No method waits, except `close` for a moment.
 
     Whoever makes it closes it; a second `close` does nothing.

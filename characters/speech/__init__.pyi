@@ -44,8 +44,8 @@ from cubeling.characters.speech.prosody.strength import (
 from cubeling.characters.speech.prosody.stress import stressed_like as stressed_like
 from cubeling.characters.speech.recognition import (
     RECOGNIZED_LANGUAGE as RECOGNIZED_LANGUAGE,
-    Phrase as Phrase,
     SpeechRecognizer as SpeechRecognizer,
+    SpokenPhrase as SpokenPhrase,
     listening_problem as listening_problem,
 )
 from cubeling.characters.speech.saying import say as say

@@ -76,7 +76,7 @@ _NUMBERS = (
 
 
 @dataclass(frozen=True)
-class Phrase:
+class SpokenPhrase:
     """Words that may be said, one after the other."""
 
     places: tuple[tuple[str, ...], ...]
@@ -139,7 +139,7 @@ class SpeechRecognizer:
         PocketSphinx is not installed, or there is nothing to hear.
     """
 
-    def __init__(self, phrases: Sequence[Phrase], voice: Voice | None = None) -> None:
+    def __init__(self, phrases: Sequence[SpokenPhrase], voice: Voice | None = None) -> None:
         self._grammar = _decoder(beam=BEAM, pbeam=BEAM, wbeam=WORD_BEAM)
         words = {word for each in phrases for place in each.places for word in place}
         words |= {word for each in (*CARRIERS, *CLOSINGS) for word in each.split()}
@@ -252,15 +252,15 @@ def _contractions(word: str) -> Iterator[str]:
         yield f"{word[:-2]}'{word[-2:]}"
 
 
-def _of_known(phrase: Phrase, known: set[str]) -> Phrase | None:
+def _of_known(phrase: SpokenPhrase, known: set[str]) -> SpokenPhrase | None:
     """Return a phrase with the words that are known; None if a place has none left."""
     places = tuple(tuple(w for w in place if w in known) for place in phrase.places)
     if any(before and not after for before, after in zip(phrase.places, places, strict=True)):
         return None
-    return Phrase(places, phrase.opens, phrase.closes) if any(places) else None
+    return SpokenPhrase(places, phrase.opens, phrase.closes) if any(places) else None
 
 
-def _network(phrases: Sequence[Phrase]) -> str:
+def _network(phrases: Sequence[SpokenPhrase]) -> str:
     """Return the finite state grammar of phrases: from a state to another with a word each."""
     start, before, after, end, count = 0, 1, 2, 3, 4
     arcs: list[tuple[int, int, float, str]] = []

@@ -28,7 +28,7 @@ from cubeling.app.scenarios.dialogue.scenario import BUNDLED_SCRIPT
 from cubeling.app.scenarios.dialogue.vocabulary import TALK_VOCABULARY
 from cubeling.characters.behaviour import phrases_of, read_script
 from cubeling.characters.speech import Manner, Samples, SpeechRecognizer, espeak, read_speech
-from cubeling.characters.speech.recognition import CARRIERS, Phrase
+from cubeling.characters.speech.recognition import CARRIERS, SpokenPhrase
 from cubeling.characters.speech.voices import Voice
 
 MIN_RIGHT, MAX_FALSE = 0.75, 0.15
@@ -56,7 +56,7 @@ PART_S, QUIET_S = 3.0, 0.2
 """Length of the parts of recordings, and the silence around what a voice says [s]."""
 
 
-def line_of(phrase: Phrase, rng: np.random.Generator) -> str:
+def line_of(phrase: SpokenPhrase, rng: np.random.Generator) -> str:
     """Return one of the lines of a phrase; some with a carrier where it leaves that open."""
     words = [str(rng.choice(place)) for place in phrase.places if place]
     carried = phrase.opens and len(words) == 1 and rng.uniform() < 0.5

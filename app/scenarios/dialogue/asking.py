@@ -1,6 +1,6 @@
 """Waiting for a language model's answer: never silent, never for ever."""
 
-from cubeling.app.pipeline.scenario import Answer, Question
+from cubeling.app.pipeline.scenario import ModelAnswer, ModelQuestion
 
 FILLER_AFTER_S = 0.7
 """Who thinks longer says so [s]: with the voice's own time it is heard within a second."""
@@ -35,17 +35,17 @@ class PendingQuestion:
         """Whether an answer is awaited."""
         return self._asked_at is not None
 
-    def ask(self, text: str, now: float) -> Question:
+    def ask(self, text: str, now: float) -> ModelQuestion:
         """Ask something at a time [s], in the place of what was asked before."""
         self._number += 1
         self._asked_at, self._filled, self._text = now, False, None
-        return Question(self._number, text)
+        return ModelQuestion(self._number, text)
 
     def drop(self) -> None:
         """Await no answer any more."""
         self._asked_at = None
 
-    def take(self, answer: Answer | None, now: float) -> None:
+    def take(self, answer: ModelAnswer | None, now: float) -> None:
         """Take what has been answered by a time [s]; what nobody asks any more is left out."""
         if self._asked_at is None:
             return

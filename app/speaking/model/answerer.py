@@ -4,7 +4,7 @@ import queue
 import threading
 
 from cubeling.affect import Emotion
-from cubeling.app.pipeline.scenario import Answer, Question
+from cubeling.app.pipeline.scenario import ModelAnswer, ModelQuestion
 from cubeling.app.pipeline.step import Step
 from cubeling.app.speaking.model.chat import TIMEOUT_S
 from cubeling.app.speaking.model.protocol import LanguageModel, ModelError
@@ -32,8 +32,8 @@ class Answerer:
 
     def __init__(self, model: LanguageModel | None = None, *, waits: bool = False) -> None:
         self._model, self._waits = model, waits
-        self._questions: queue.Queue[tuple[Question, Emotion] | str | None] = queue.Queue()
-        self._answers: queue.Queue[Answer] = queue.Queue()
+        self._questions: queue.Queue[tuple[ModelQuestion, Emotion] | str | None] = queue.Queue()
+        self._answers: queue.Queue[ModelAnswer] = queue.Queue()
         self._notices: queue.Queue[str] = queue.Queue()
         self._asked = 0
         self._newest = 0
@@ -53,7 +53,7 @@ class Answerer:
         elif outcome.reply is not None and not outcome.reply.is_answer:
             self._questions.put(TaggedText.read(outcome.reply.text).text)
 
-    def answer(self) -> Answer | None:
+    def answer(self) -> ModelAnswer | None:
         """Return the next answer that has come; None for none."""
         try:
             if self._waits and self._asked:
@@ -94,4 +94,4 @@ class Answerer:
                 told = f"{error}; the script answers"
             if told:
                 self._notices.put(told)
-            self._answers.put(Answer(question.number, text))
+            self._answers.put(ModelAnswer(question.number, text))

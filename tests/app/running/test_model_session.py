@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
-from cubeling.app.pipeline.scenario import Answer, Inputs
+from cubeling.app.pipeline.scenario import Inputs, ModelAnswer
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions
@@ -68,7 +68,7 @@ def test_answers_are_recorded_and_a_replay_asks_nobody(manner, tmp_path, monkeyp
         assert len(server.asked) == 2
         answers = [each.asked.answer for each in session_parts.inputs(path).values()]
         text = SAYS if manner == "good" else ""
-        assert [each for each in answers if each] == [Answer(1, text), Answer(2, text)]
+        assert [each for each in answers if each] == [ModelAnswer(1, text), ModelAnswer(2, text)]
         replies = [each.outcome.reply.text for each in player.steps if each.outcome.reply]
         assert len(replies) == 3
         assert (replies[1] == SAYS) == (manner == "good")

@@ -10,7 +10,7 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.scenarios import find_scenario
 from cubeling.app.sound import NoSoundError
 from cubeling.app.speaking import listener as module
-from cubeling.app.speaking.listener import MAX_LISTEN_S, NOTHING_HEARD, Listener
+from cubeling.app.speaking.listener import MAX_LISTEN_S, NOTHING_HEARD, PushToTalk
 from cubeling.app.speaking.microphone import MICROPHONE_HZ, SILENT_S
 
 SCRIPT = find_scenario("talk").script
@@ -74,21 +74,21 @@ def outcome_of(listener, *, end=True, language="en"):
 
 
 def test_what_is_heard_is_an_input_and_interrupts():
-    assert outcome_of(Listener(FakeMicrophone)) == (Inputs(typed="hello", hush=True), "")
+    assert outcome_of(PushToTalk(FakeMicrophone)) == (Inputs(typed="hello", hush=True), "")
 
 
 def test_what_is_not_understood_is_said_so():
-    told, notice = outcome_of(Listener(lambda: FakeMicrophone(0.0)))
+    told, notice = outcome_of(PushToTalk(lambda: FakeMicrophone(0.0)))
     assert (told.typed, notice) == ("", NOTHING_HEARD)
 
 
 def test_a_key_that_is_forgotten_ends_by_itself():
-    told, _ = outcome_of(Listener(FakeMicrophone, Clock(MAX_LISTEN_S / 3)), end=False)
+    told, _ = outcome_of(PushToTalk(FakeMicrophone, Clock(MAX_LISTEN_S / 3)), end=False)
     assert told.typed == "hello"
 
 
 def test_a_microphone_that_sends_nothing_is_lost():
-    _, notice = outcome_of(Listener(lambda: FakeMicrophone(None), Clock(SILENT_S / 2)), end=False)
+    _, notice = outcome_of(PushToTalk(lambda: FakeMicrophone(None), Clock(SILENT_S / 2)), end=False)
     assert notice == "The microphone was lost; typing goes on"
 
 
@@ -96,20 +96,20 @@ def test_without_a_microphone_typing_goes_on():
     def none():
         raise NoSoundError("no microphone can be opened: none", "buy one")
 
-    told, notice = outcome_of(Listener(none))
+    told, notice = outcome_of(PushToTalk(none))
     assert told == Inputs()
     assert notice == "no microphone can be opened: none: buy one; typing goes on"
 
 
 def test_another_language_is_refused_in_a_line():
-    told, notice = outcome_of(Listener(FakeMicrophone), language="es")
+    told, notice = outcome_of(PushToTalk(FakeMicrophone), language="es")
     assert told == Inputs()
     assert notice == "speech is understood in English only, not in 'es': type instead"
 
 
 def test_without_the_extra_typing_goes_on(monkeypatch):
     monkeypatch.setitem(sys.modules, "pocketsphinx", None)
-    told, notice = outcome_of(Listener(FakeMicrophone))
+    told, notice = outcome_of(PushToTalk(FakeMicrophone))
     assert told == Inputs()
     assert notice.endswith("pip install pocketsphinx; typing goes on")
 
@@ -122,7 +122,7 @@ def test_who_speaks_again_before_the_words_are_known_is_told():
             working.wait(10)
             return "hello"
 
-    listener = Listener(FakeMicrophone)
+    listener = PushToTalk(FakeMicrophone)
     listener._known = SCRIPT, Slow()
     listener.begin(SCRIPT, "en")
     listener.end()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cubeling.characters import CharacterError
-from cubeling.characters.speech import Phrase, SpeechRecognizer, espeak, listening_problem
+from cubeling.characters.speech import SpeechRecognizer, SpokenPhrase, espeak, listening_problem
 from cubeling.characters.speech.voices.espeak import espeak_installed
 
 RATE = 16_000
@@ -18,12 +18,12 @@ pytestmark = pytest.mark.skipif(
 )
 
 PHRASES = (
-    Phrase((("yes",),)),
-    Phrase((("tyrannosaurus",),), opens=True, closes=True),
-    Phrase((("joke",),), opens=True, closes=True),
-    Phrase((("my",), ("name",), ("is",), ("lucy", "tom")), opens=True, closes=True),
-    Phrase((("im",), ("8",))),
-    Phrase((("how",), ("old",), ("are",), ("you",))),
+    SpokenPhrase((("yes",),)),
+    SpokenPhrase((("tyrannosaurus",),), opens=True, closes=True),
+    SpokenPhrase((("joke",),), opens=True, closes=True),
+    SpokenPhrase((("my",), ("name",), ("is",), ("lucy", "tom")), opens=True, closes=True),
+    SpokenPhrase((("im",), ("8",))),
+    SpokenPhrase((("how",), ("old",), ("are",), ("you",))),
 )
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cubeling.app.pipeline.scenario import Answer
+from cubeling.app.pipeline.scenario import ModelAnswer
 from cubeling.app.scenarios.dialogue.asking import FILLERS, LOOK_ASIDE_S, MAX_THINK_S
 from tests.app.scenarios.dialogue.test_talk import Conversation
 
@@ -36,7 +36,7 @@ def test_only_what_the_script_has_no_answer_to_is_asked(talk, hand):
 
 def test_an_answer_is_said_and_remembered_as_heard(talk):
     question = ask(talk)
-    talk.frame(answer=Answer(question.number, BLUE))
+    talk.frame(answer=ModelAnswer(question.number, BLUE))
     assert talk.replies[-1] == BLUE
     talk.wait(6.0)
     assert talk.profile["said"] == BLUE
@@ -60,7 +60,7 @@ def test_a_filler_and_a_look_aside_come_within_a_second(talk):
 def test_an_answer_that_comes_meanwhile_follows_the_filler(talk):
     question = ask(talk)
     talk.wait(0.9)
-    talk.frame(answer=Answer(question.number, BLUE))
+    talk.frame(answer=ModelAnswer(question.number, BLUE))
     assert talk.replies[-1] in FILLERS["en"], "it is said to its end"
     talk.wait(3.0)
     assert talk.replies[-1] == BLUE
@@ -71,13 +71,13 @@ def test_without_an_answer_the_script_answers(talk, failed):
     question = ask(talk)
     asked, before = talk.now, len(talk.replies)
     if failed:
-        talk.frame(answer=Answer(question.number, ""))
+        talk.frame(answer=ModelAnswer(question.number, ""))
     else:
         talk.wait(MAX_THINK_S + 0.5)
     assert len(talk.replies) == before + (1 if failed else 2)
     assert talk.replies[-1] not in FILLERS["en"]
     assert talk.now - asked < MAX_THINK_S + 1.0
-    talk.frame(answer=Answer(question.number, BLUE))
+    talk.frame(answer=ModelAnswer(question.number, BLUE))
     assert talk.replies[-1] != BLUE, "it comes too late"
 
 
@@ -85,11 +85,11 @@ def test_who_says_something_else_does_not_wait(talk):
     first = ask(talk)
     talk.frame(typed="tell me a joke")
     joke = talk.replies[-1]
-    talk.frame(answer=Answer(first.number, BLUE))
+    talk.frame(answer=ModelAnswer(first.number, BLUE))
     talk.wait(1.5)
     assert talk.replies[-1] == joke
     second = ask(talk)
-    talk.frame(answer=Answer(first.number, BLUE))
+    talk.frame(answer=ModelAnswer(first.number, BLUE))
     assert talk.replies[-1] == joke, "it answers another question"
-    talk.frame(answer=Answer(second.number, BLUE))
+    talk.frame(answer=ModelAnswer(second.number, BLUE))
     assert talk.replies[-1] == BLUE

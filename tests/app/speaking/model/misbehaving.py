@@ -5,6 +5,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
 
 SAYS = 'Light <begin_gesture id="g" anim="nod"/>is scattered<end_gesture id="g"/> by air.'
 
@@ -116,7 +117,7 @@ class ModelServer(ThreadingHTTPServer):
     def __init__(self, manner: str, says: str):
         super().__init__(("127.0.0.1", 0), _Handler)
         self.manner, self.says = manner, says
-        self.asked: list[dict] = []
+        self.asked: list[dict[str, Any]] = []
         self.keys: list[str | None] = []
         self.released = threading.Event()
 
