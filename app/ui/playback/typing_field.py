@@ -12,7 +12,7 @@ MAX_TYPED = 200
 FIELD_HEIGHT = 48.0
 TEXT_SIZE = 22.0
 
-EMPTY_WORDS = "Type here and press Enter, or F2 and speak; Esc lets the keys be keys"
+EMPTY_WORDS = "Type, and Enter says it; F2 to speak; Esc lets the keys be keys"
 CLOSED_WORDS = "Enter: type something  ·  F2: speak"
 
 
