@@ -41,7 +41,7 @@ DITHER = 0.002
 BEAM, WORD_BEAM = 1e-44, 1e-27
 """How much less likely a path is that is given up: wider beams take longer, and hear no more."""
 
-MAX_DEFICIT = 3.2
+MAX_DEFICIT = 3.0
 """Greatest `Hearing.deficit` of what was said; guarded by `python -m tests.bench.listening`."""
 
 MIN_COVERAGE, MAX_COVERAGE = 0.8, 2.5

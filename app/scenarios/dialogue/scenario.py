@@ -114,7 +114,7 @@ class DialogueScenario:
         self._listen(inputs, words, now)
         self._question.take(inputs.answer, now)
         moment = Moment(controls, situation, inputs, self._roles)
-        answers = self._question.text is not None
+        answers = bool(self._question.text)
         turn = self._answer(moment) if visible else None
         question = reply = None
         if turn is not None and turn.is_question:
@@ -154,8 +154,8 @@ class DialogueScenario:
         busy = self._reply.is_busy(now) or now < self._listens_until
         if self._question.is_open:
             text = self._question.text
-            if text is None or self._reply.is_busy(now):
-                return None  # it thinks, or says so to the end
+            if text is None or busy:
+                return None  # it thinks, says so to the end, or listens
             self._question.drop()
             if text:
                 return self._dialogue.answer(text, now)

@@ -4,6 +4,7 @@ import pytest
 
 from cubeling.app.pipeline.scenario import ModelAnswer
 from cubeling.app.scenarios.dialogue.asking import FILLERS, LOOK_ASIDE_S, MAX_THINK_S
+from cubeling.app.scenarios.dialogue.scenario import TYPING_S
 from tests.app.scenarios.dialogue.test_talk import Conversation
 
 VAGUE = "why is the sky blue"
@@ -63,6 +64,16 @@ def test_an_answer_that_comes_meanwhile_follows_the_filler(talk):
     talk.frame(answer=ModelAnswer(question.number, BLUE))
     assert talk.replies[-1] in FILLERS["en"], "it is said to its end"
     talk.wait(3.0)
+    assert talk.replies[-1] == BLUE
+
+
+def test_an_answer_waits_for_who_is_typing(talk):
+    question = ask(talk)
+    talk.frame(hush=True)
+    talk.frame(answer=ModelAnswer(question.number, BLUE))
+    talk.wait(2.0)
+    assert talk.replies[-1] != BLUE
+    talk.wait(TYPING_S)
     assert talk.replies[-1] == BLUE
 
 
