@@ -28,7 +28,7 @@ texels of the map: less is rounding, as the map has one distance for a whole tex
 
 SURFACE_RANGE_TEXELS = (0.6, 1.4)
 """Heights above a triangle at which an opaque surface begins to shadow it, and does so completely,
-in texels: the two are compared where a texel has its distance, so that there is little rounding."""
+in texels: both are known where the texel has its distance, so that there is little rounding."""
 
 TABLE_RANGE_TEXELS = (-4.0, -3.0)
 """The same for the table, which is in no map: soles shadow it that sink into it a little."""

@@ -16,7 +16,6 @@ from cubeling.tracking.appearance.hand.colour_model import (
     Colours,
     colours,
 )
-from cubeling.tracking.appearance.hand.components import components_with
 from cubeling.tracking.appearance.hand.edge import soft_cover
 from cubeling.tracking.appearance.hand.last_hand import LastHand
 from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
@@ -50,6 +49,13 @@ what changes it is the first hand."""
 
 MAX_RESTING_AGE = 40
 """The same where it has the colours of the hand, and is connected to it."""
+
+STILL_ODDS, MIN_DISTINCTNESS = 1.0, 0.5
+"""What speaks for a hand there, as logarithm of odds; and how well its colours must tell it from
+the desk, where nothing else does."""
+
+MAX_STILL_SHARE = 0.5
+"""Most of such a part, as a share of the hand that was found, or an edge of the cube squared."""
 
 MANY_FRAMES = 20
 """Frames at a session's beginning, and after the camera was moved, in which all is looked at and
@@ -201,10 +207,19 @@ class HandFinder:
         if view.whole:
             place = self._without(self._uncovered_pixels(place, view, by_colour), place, window)
         if cube.shows_hand and self._colours.hand_is_new:
-            place = self._without(self._still_hand(place, view, by_colour, cube), place, window)
+            seeds = np.zeros(by_colour.shape, np.uint8)
+            seeds[window.cube_box] = cube.evidence
+            still = self._still_parts(seeds, place, view, by_colour, cube, np.inf)
+            place = self._without(still, place, window)
         distinctness = self._colours.distinctness
         odds = hand_odds(window, cube, place, by_colour, distinctness)
         hand = choose_components(odds > 0, window, cube, place, by_colour, distinctness)
+        if hand is not None and distinctness > MIN_DISTINCTNESS:
+            most = max(MAX_STILL_SHARE * np.count_nonzero(hand), window.edge**2)
+            still = self._still_parts(hand, place, view, by_colour, cube, most)
+            place = self._without(still, place, window)
+            odds[still] = np.maximum(odds[still], np.float32(STILL_ODDS))
+            hand = np.asarray(cv2.max(hand, still.view(np.uint8)), np.uint8)
         self._learn(view, cube, place, odds, hand)
         if hand is None:
             return None
@@ -229,24 +244,31 @@ class HandFinder:
         doubtful[doubtful] = self._colours.uncovered_pixels(view.colours[doubtful], before)
         return doubtful
 
-    def _still_hand(
-        self, place: WindowChange, view: _View, by_colour: Floats, cube: CubePart
+    def _still_parts(
+        self,
+        hand: Image,
+        place: WindowChange,
+        view: _View,
+        by_colour: Floats,
+        cube: CubePart,
+        most: float,
     ) -> Flags:
-        """Return where the background is a hand that has not moved since the beginning.
+        """Return where the background is a part of a hand that has not moved since the beginning.
 
-        It has the colours of what hides the print, and is connected to that.
+        It has the colours of the hand, touches what is known of that, (h, w), and is no larger than
+        `most` pixels.
         """
         alike = (by_colour > MAX_ODDS - MIN_DIFFERENCE) & cube.outside
         alike &= ~(place.changed | place.relit)
         alike &= self._background.age(view.window.box) < MAX_RESTING_AGE
-        evidence = np.zeros(alike.shape, bool)
-        evidence[view.window.cube_box] = cube.evidence
-        near = cv2.dilate(evidence.view(np.uint8), SQUARE_5, iterations=2)
-        hand = cv2.morphologyEx(alike.view(np.uint8), cv2.MORPH_CLOSE, SQUARE_3)
-        return (
-            components_with(np.asarray(cv2.max(hand, near), np.uint8), evidence).view(bool)
-            & cube.outside
-        )
+        closed = cv2.morphologyEx(alike.view(np.uint8), cv2.MORPH_CLOSE, SQUARE_3)
+        closed *= cube.outside.view(np.uint8) * (hand == 0)
+        count, labels, statistics, _ = cv2.connectedComponentsWithStats(closed)
+        near = cv2.dilate(hand, SQUARE_5, iterations=2) > 0
+        keep = np.bincount(labels[near], minlength=count) > 0
+        keep &= statistics[:, cv2.CC_STAT_AREA] < most
+        keep[0] = False
+        return np.asarray(keep[labels])
 
     def _learn_first(self, view: _View, cube: CubePart) -> None:
         """Learn colours before anything of a hand or its surroundings is known."""

@@ -9,6 +9,7 @@ import pytest
 
 from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.session.bundled import bundled_session
+from cubeling.tracking.appearance.hand.background import FULL_AGE
 from cubeling.tracking.appearance.hand.finder import MANY_FRAMES, HandFinder
 from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
 from cubeling.tracking.appearance.hand.window import STILL_FRAMES, Stillness, WindowFinder
@@ -128,6 +129,32 @@ def test_fingers_on_the_cube_from_the_beginning_are_not_taken_for_its_paper():
 @pytest.mark.parametrize("skin", some(["825c43", "3f6fc4"]))
 def test_a_finger_on_the_cube_shows_the_hand_that_rested_beside_it_from_the_beginning(skin):
     assert overlap_in(HandView(skin, azimuth_deg=10, seed=1), 31, begin=25) > 0.85
+
+
+def test_a_square_of_the_hand_that_was_learned_as_desk_is_no_hole_in_it(film):
+    """The hole is planted: there, the background is what the hand looks like, known for a while."""
+    intrinsics, pictures = film
+    finder = HandFinder(CUBE, intrinsics)
+    for picture, pose in pictures[:-1]:
+        before = finder.update(picture, state_at(pose))
+    assert before is not None
+    inside = cv2.erode((before.share > 250).astype(np.uint8), np.ones((9, 9), np.uint8))
+    row, column = np.argwhere(inside)[len(np.argwhere(inside)) // 2]
+    top, left = (row + before.y // before.scale - 7, column + before.x // before.scale - 7)
+    picture, pose = pictures[-1]
+    hole = np.s_[top : top + 15, left : left + 15]
+    size = tuple(side // before.scale for side in intrinsics.size)
+    small = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+    background = finder._background
+    background._mean[:, *hole] = finder._lab(small)[:, *hole]
+    background._age[hole] = 2 * FULL_AGE
+    mask = finder.update(picture, state_at(pose))
+    assert mask is not None
+    found = covered(mask, picture.shape)
+    rows, columns = (slice(side.start * mask.scale, side.stop * mask.scale) for side in hole)
+    core = covered(before, picture.shape)[rows, columns] > 0.99
+    assert core.sum() > 100 * mask.scale**2
+    assert found[rows, columns][core].mean() > 0.95
 
 
 @pytest.mark.slow(reason="a desk is drawn")
