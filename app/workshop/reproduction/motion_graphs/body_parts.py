@@ -22,7 +22,11 @@ from cubeling.app.workshop.reproduction.motion_graphs.summary import (
     printed_value,
     summarize,
 )
-from cubeling.app.workshop.reproduction.result import Plot, Reproduction, ReproductionRequest
+from cubeling.app.workshop.reproduction.result import (
+    PlottedFigure,
+    Reproduction,
+    ReproductionRequest,
+)
 from cubeling.characters import Character
 from cubeling.characters.model import with_root_joint
 from cubeling.characters.motion import DEFAULT_RATE_HZ, MotionLibrary
@@ -113,14 +117,14 @@ def _with_spread(estimate: Estimate) -> str:
     return f"{estimate.text} ({estimate.spread})" if estimate.spread else estimate.text
 
 
-def plots_of(measured: Measurement) -> tuple[Plot, ...]:
+def plots_of(measured: Measurement) -> tuple[PlottedFigure, ...]:
     """Return connectivity and cost against the threshold, of one choice of clips."""
     shown = (
         ("Figure 3.14", measured.connectivity, "share of frames connected"),
         ("Figure 3.15", measured.cost, "mean cost of a transition"),
     )
     return tuple(
-        Plot(f"{number}: {label} by split profile, ours", partial(_draw, curves, label))
+        PlottedFigure(f"{number}: {label} by split profile, ours", partial(_draw, curves, label))
         for number, curves, label in shown
         if curves
     )
