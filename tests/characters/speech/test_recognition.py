@@ -27,18 +27,23 @@ PHRASES = (
 )
 
 
+class Ears:
+    """Hears what a voice says, with a little silence around it."""
+
+    def __init__(self, voice):
+        self.recognizer = SpeechRecognizer(PHRASES, voice)
+        self._voice = voice
+
+    def __call__(self, text, level=1.0):
+        said = self._voice.say(text, "en-us")
+        quiet = round(0.2 * said.rate)
+        return self.recognizer.hear(level * np.pad(said.samples, quiet), said.rate)
+
+
 @pytest.fixture(scope="module")
 def heard():
     with espeak() as voice:
-        recognizer = SpeechRecognizer(PHRASES, voice)
-
-        def hear(text, level=1.0):
-            said = voice.say(text, "en-us")
-            quiet = round(0.2 * said.rate)
-            return recognizer.hear(level * np.pad(said.samples, quiet), said.rate)
-
-        hear.recognizer = recognizer
-        yield hear
+        yield Ears(voice)
 
 
 @pytest.mark.slow(reason="a model of 30 MB is loaded twice")
