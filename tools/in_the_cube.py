@@ -11,7 +11,7 @@ from rich.console import Console
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.ui.contact_sheets import save
 from cubeling.characters.rendering import create_context
 from cubeling.tracking.synthetic import open_synthetic

@@ -22,7 +22,8 @@ from cubeling.app.commands.study.mood import plot
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.preferences import PreferenceStore
-from cubeling.app.running.opening import intrinsics_for, open_session
+from cubeling.app.running.kept_lens import intrinsics_for
+from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.bundled import bundled_session

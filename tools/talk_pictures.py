@@ -13,7 +13,7 @@ from cubeling.affect import LABEL_SETS
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.scenarios import find_scenario
 from cubeling.app.speaking.speaker import LiveSpeaker
 from cubeling.app.ui.cards.layout import CardLayout

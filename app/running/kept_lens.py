@@ -7,6 +7,7 @@ its pictures. A calibration that the user names wins.
 import re
 from pathlib import Path
 
+from cubeling.app.errors import AppError
 from cubeling.app.preferences import PreferenceStore
 from cubeling.tracking import Intrinsics, TrackingError
 
@@ -86,3 +87,20 @@ def camera_name(uri: str) -> str:
         # Another camera may be camera:0 tomorrow.
         words += f" {called.read_text(errors='replace')}"
     return re.sub(r"[^A-Za-z0-9]+", "-", words).strip("-")[:MAX_NAME_LENGTH]
+
+
+def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
+    """Return intrinsics for pictures of `size`; guess them where `intrinsics` is None.
+
+    Raises AppError if the calibration was made at another aspect ratio.
+    """
+    if intrinsics is None:
+        return Intrinsics.guess(size)
+    if intrinsics.size == size:
+        return intrinsics
+    if abs(intrinsics.size[1] * size[0] / intrinsics.size[0] - size[1]) > 1.0:
+        raise AppError(
+            f"the calibration is for {intrinsics.size[0]}x{intrinsics.size[1]} pictures, "
+            f"the camera gives {size[0]}x{size[1]}: calibrate it at this size"
+        )
+    return intrinsics.scale(size)

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.cubes.other_cube import cube_for
 from cubeling.app.pipeline.playground import Playground
@@ -13,12 +12,13 @@ from cubeling.app.pipeline.scenario import Inputs, ListeningScenario
 from cubeling.app.pipeline.step import ReplayInputs, RobotView
 from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.preferences import PreferenceStore
+from cubeling.app.running.asked_scenario import is_replay, scenario_of, settings_of
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.kept_lens import LensStore
 from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.robots import RobotLine
-from cubeling.app.scenarios import Scenario, ScenarioSettings, find_scenario, make_scenario
+from cubeling.app.scenarios import find_scenario
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.speaking.listener import PushToTalk
 from cubeling.app.speaking.model.answerer import Answerer
@@ -27,7 +27,7 @@ from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import Screen
 from cubeling.bad_input import BadInputError
-from cubeling.tracking import CubeModel, FrameSource, open_source
+from cubeling.tracking import FrameSource, open_source
 
 if TYPE_CHECKING:
     from cubeling.app.running.recording.recording import SessionRecording
@@ -378,33 +378,3 @@ class OpenedSession:
         self.end_recording()
         if self.source is not self.first_source:
             self.source.close()
-
-
-def is_replay(session: SessionFile | None, options: SessionOptions) -> bool:
-    """Return whether a session is played again as it was, and not only its frames."""
-    return session is not None and session.info.options.scenario == options.scenario
-
-
-def settings_of(options: SessionOptions) -> ScenarioSettings:
-    """Return the user's settings of a scenario; raises AppError or AffectError as reading them."""
-    personality = None if options.personality is None else Personality.load(options.personality)
-    return ScenarioSettings(
-        options.speed_map,
-        options.turns,
-        personality,
-        options.talk_language,
-        options.asks_model,
-    )
-
-
-def scenario_of(options: SessionOptions, name: str, cube: CubeModel | None = None) -> Scenario:
-    """Make a scenario with the user's settings; None for its own cube."""
-    return make_scenario(
-        name,
-        cube,
-        speed_map=options.speed_map,
-        turns=options.turns,
-        personality=options.personality,
-        language=options.talk_language,
-        asks_model=options.asks_model,
-    )

@@ -2,9 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,28 +12,22 @@ from cubeling.app.output_path import default_folder
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import (
-    CastScenario,
     ConversingScenario,
     ListeningScenario,
-    NamingScenario,
     SoundingScenario,
 )
 from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.preferences import PreferenceStore
+from cubeling.app.running.asked_scenario import cast_of, is_replay, scenario_of, settings_of
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.front_end import FrontEnd
 from cubeling.app.running.instrument import Instrument
-from cubeling.app.running.kept_lens import LensStore
-from cubeling.app.running.opened_session import (
-    OpenedSession,
-    is_replay,
-    open_camera,
-    scenario_of,
-    settings_of,
-)
+from cubeling.app.running.kept_lens import LensStore, intrinsics_for
+from cubeling.app.running.opened_session import OpenedSession, open_camera
 from cubeling.app.running.option_checks import check_output_paths, check_part
 from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.robots import RobotLine, is_real_robot
+from cubeling.app.running.screens import open_screen, open_sound
 from cubeling.app.running.typed_lines import TypedLines
 from cubeling.app.scenarios import Scenario, scenario_cube
 from cubeling.app.session import SessionFile, SessionOptions
@@ -43,27 +36,19 @@ from cubeling.app.speaking.model.answerer import Answerer
 from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
-from cubeling.app.ui.screen import NullScreen, Screen
-from cubeling.characters import (
-    Character,
-    choose_controller,
-    load_to_play,
-    prepare_gestures,
-)
+from cubeling.app.ui.screen import Screen
+from cubeling.characters import choose_controller, prepare_gestures
 from cubeling.tracking import (
     SECOND,
     CubeModel,
     FrameSource,
     Intrinsics,
-    StoredFrames,
     open_source,
 )
 
 # What only some sessions have (a window, sound, a recording, players) is loaded by those.
 if TYPE_CHECKING:
-    import moderngl
-
-    from cubeling.app.sound import Mixer, SessionSound, SoundOutput
+    pass
 
 
 @contextmanager
@@ -128,27 +113,11 @@ def open_session(
     in_play = [*cubes, *map(CubeModel.load, (own, f"{own}{SECOND}")[len(cubes) :])]
     cube, *further_cubes = in_play[: options.players]
     scenario = scenario_of(options, options.scenario, cube)
-    character, *others = (
-        load_to_play(
-            name, own_motions_only=options.own_motions_only, whole_limbs=options.whole_limbs
-        )
-        for name in names_of_cast(options, scenario)
-    )
-    if isinstance(scenario, NamingScenario):
-        named = zip(scenario.names, (character, *others), strict=False)
-        character, *others = (replace(each, name=name) for name, each in named)
-    if options.idle is not None:
-        if options.controller != "tree":
-            raise AppError(
-                f"the controller {options.controller!r} stands by its own motions: leave out --idle"
-            )
-        from cubeling.characters import standing_as
-
-        character = standing_as(character, options.idle)
+    character, *others = cast = cast_of(options, scenario)
     controller = choose_controller(options.controller, character, options.motions)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
     for instrument in instruments:
-        instrument.begin((character, *others))
+        instrument.begin(tuple(cast))
     with ExitStack() as closing:
         if source is None:
             source = closing.enter_context(open_source(options.source))
@@ -168,9 +137,7 @@ def open_session(
                 folder = options.folder or default_folder()
                 screen, context = front_end.open_screen(source.size, folder, closing)
             else:
-                screen, context = _open_screen(
-                    options, source, sound, preferences, monitor, closing
-                )
+                screen, context = open_screen(options, source, sound, preferences, monitor, closing)
         if typed is not None or until_over:
             screen = TypedLines(screen, typed)
         playground = Playground(
@@ -194,7 +161,7 @@ def open_session(
         )
         closing.callback(playground.close)
         if options.windowed or source.live:  # else nobody waits for a frame
-            for each in (character, *others):
+            for each in cast:
                 prepare_gestures(each)
         if replayed is None and options.source.endswith(".mcap"):
             replayed = closing.enter_context(SessionFile(Path(options.source)))
@@ -209,7 +176,6 @@ def open_session(
         # What another scenario said is no reply.
         said = is_replay(replayed, options) or not replies
         lines = replayed.lines if replayed is not None and said else None
-        cast = (character, *others)
         speaker = open_speaker(
             options,
             cast,
@@ -283,46 +249,6 @@ def open_session(
         yield session
 
 
-def names_of_cast(options: SessionOptions, scenario: Scenario) -> tuple[str, ...]:
-    """Return the names or files of all characters: at least one for each player."""
-    chosen = options.character is not None or options.others
-    own = scenario.others if isinstance(scenario, CastScenario) and not chosen else ()
-    named = (options.character or scenario.character, *options.others, *own)
-    return (*named, *[scenario.character] * (options.players - len(named)))
-
-
-def open_sound(
-    options: SessionOptions,
-    character: Character,
-    closing: ExitStack,
-    loudspeaker: "Callable[[Mixer], SoundOutput] | None" = None,
-) -> "SessionSound | None":
-    """Start the sound of a window or a video; None if it cannot have any."""
-    path = options.output
-    if not options.pictures and options.sounds is None:
-        return None
-    from cubeling.app.sound import Mixer, SessionSound, SoundBank
-    from cubeling.app.ui.video_file import has_sound
-    from cubeling.characters import clips_of_actions
-
-    bank = SoundBank.load(options.sounds, clips_of_actions(character.clips))
-    if not options.pictures or (path is not None and (options.muted or not has_sound(path))):
-        return None
-    sound = SessionSound(
-        Mixer(bank, options.volume),
-        live=options.windowed,
-        muted=options.muted,
-        # A real robot has a voice of its own; the second player may have none.
-        moods=(
-            not is_real_robot(options.robot),
-            options.second_robot != "none" and not is_real_robot(options.second_robot),
-        ),
-        loudspeaker=loudspeaker,
-    )
-    closing.callback(sound.close)
-    return sound
-
-
 def _answerer(
     options: SessionOptions,
     scenario: Scenario,
@@ -341,52 +267,6 @@ def _answerer(
     return Answerer(model, waits=waits)
 
 
-def _open_screen(
-    options: SessionOptions,
-    source: FrameSource,
-    sound: "SessionSound | None",
-    preferences: PreferenceStore,
-    monitor: SessionMonitor,
-    closing: ExitStack,
-) -> "tuple[Screen, moderngl.Context | None]":
-    """Open the window or the output file, and the context to draw in."""
-    if not options.pictures:
-        return NullScreen(), None
-    if options.output is not None:
-        from cubeling.app.ui.cards.overlay import virtual_robot_side
-        from cubeling.app.ui.cards.virtual_robot import VirtualRobot
-        from cubeling.app.ui.output_file import OutputFile
-        from cubeling.characters.rendering import create_context
-
-        context = create_context()
-        closing.callback(context.release)
-        virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
-        closing.callback(virtual_robot.close)
-        samples = None if sound is None else sound.mixer.render
-        output = OutputFile(
-            options.output,
-            source.size,
-            source.rate,
-            virtual_robot,
-            samples,
-            options.video_codec,
-        )
-        return closing.enter_context(output), context
-    from cubeling.app.ui.playback.timeline import STRIP_HEIGHT
-    from cubeling.app.ui.window import Window  # whose libraries a computer without display lacks
-
-    strip = STRIP_HEIGHT if is_seekable(source) else 0.0
-    folder = options.folder or default_folder()
-    title = f"Cubeling: {options.scenario}"
-    window = Window(source.size, title, folder, strip, preferences, monitor)
-    return closing.enter_context(window), window.context
-
-
-def is_seekable(source: FrameSource) -> bool:
-    """Return whether a source can be played from within, and its length is known."""
-    return isinstance(source, StoredFrames) and bool(source.duration)
-
-
 def _pace(
     options: SessionOptions, source: FrameSource, instruments: Sequence[Instrument]
 ) -> Pace | None:
@@ -398,23 +278,6 @@ def _pace(
         return None
     watched = options.windowed and options.record is None  # what is written has every frame
     return Pace(1.0 / source.rate if watched else math.inf)
-
-
-def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
-    """Return intrinsics for pictures of `size`; guess them where `intrinsics` is None.
-
-    Raises AppError if the calibration was made at another aspect ratio.
-    """
-    if intrinsics is None:
-        return Intrinsics.guess(size)
-    if intrinsics.size == size:
-        return intrinsics
-    if abs(intrinsics.size[1] * size[0] / intrinsics.size[0] - size[1]) > 1.0:
-        raise AppError(
-            f"the calibration is for {intrinsics.size[0]}x{intrinsics.size[1]} pictures, "
-            f"the camera gives {size[0]}x{size[1]}: calibrate it at this size"
-        )
-    return intrinsics.scale(size)
 
 
 def check_start(options: SessionOptions, source: FrameSource) -> None:

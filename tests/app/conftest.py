@@ -17,7 +17,7 @@ from cubeling.app import cli
 from cubeling.app.commands.play import progress
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import Step
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session import Recorder, frame_encoder
 from cubeling.tracking import CubeControls, open_source
 from tests.app.scripted import play_script

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session.bundled import bundled_session
 from cubeling.characters import Character
 from cubeling.characters.rendering import QUALITIES, create_context, draws_in_software

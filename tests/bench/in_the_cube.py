@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.characters.rendering import WALL_SHARE, create_context
 from cubeling.characters.rendering.projection import project

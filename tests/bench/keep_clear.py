@@ -35,7 +35,7 @@ from cubeling.app.commands.play.complete import complete_session
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.table.obstacles import Obstacles
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.scenarios import find_scenario
 from cubeling.app.session import SessionFile
 from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session

@@ -33,7 +33,7 @@ from rich.table import Table
 from cubeling.app.pipeline.choices import REALISM_CHOICES
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import Step
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session.bundled import bundled_session
 from cubeling.characters import Character, PosedCharacter
 from cubeling.characters.model.mesh import Material

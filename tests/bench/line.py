@@ -29,7 +29,7 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.pipeline.table.situation import SeenCube
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.app.sound import Mixer, SessionSound, SoundBank
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side

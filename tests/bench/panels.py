@@ -19,7 +19,7 @@ from rich.table import Table
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.preferences import Preferences, PreferenceStore
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.session import SessionOptions
 from cubeling.app.session.bundled import bundled_session

@@ -24,7 +24,7 @@ from rich.table import Table
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.running.robots import RobotLine
 from cubeling.app.session.bundled import bundled_session
 from cubeling.characters.rendering import create_context

@@ -92,7 +92,7 @@ def calibrate(
     check_input(checked, "camera file")
     if ":" not in source:
         check_input(source, "video")
-    from cubeling.app.running.opening import intrinsics_for
+    from cubeling.app.running.kept_lens import intrinsics_for
     from cubeling.app.ui.calibration.coach_lines import write_coverage
     from cubeling.tracking import Intrinsics, open_source
     from cubeling.tracking.calibration import CubeFinder, write_board

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from cubeling.app.errors import AppError
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.running.opened_session import OpenedSession
-from cubeling.app.running.opening import intrinsics_for
 from cubeling.app.running.playback.transport import Transport
 from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.robots import RobotLine

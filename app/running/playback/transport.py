@@ -4,9 +4,9 @@ import math
 from dataclasses import dataclass
 
 from cubeling.app.running.opened_session import OpenedSession
-from cubeling.app.running.opening import is_seekable
 from cubeling.app.running.playback.frame_feed import FrameFeed
 from cubeling.app.running.playback.saved_states import SavedStates
+from cubeling.app.running.screens import is_seekable
 from cubeling.app.ui.playback.status import PlaybackMark, Position
 from cubeling.robot import Closeable
 from cubeling.tracking import Frame, Health, LiveFrames

@@ -12,7 +12,7 @@ from cubeling.app.pipeline import step_renderer
 from cubeling.app.pipeline.choices import REALISM_CHOICES, realism_of
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step_renderer import FOCUSING_S, FocusDistance
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.tracking import CubeGestures, CubeTracker
 from cubeling.tracking.synthetic import open_synthetic
 

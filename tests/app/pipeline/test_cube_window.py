@@ -16,7 +16,7 @@ from cubeling.app.pipeline.cube_window import (
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step_renderer import CLOSE_UP_PX
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session.encoding import encode
 from cubeling.characters import ActionIntent, Character, CharacterCommand
 from cubeling.characters.rendering import WALL_SHARE, CameraView, Stage, create_context

@@ -11,7 +11,7 @@ import pytest
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import check_actions
-from cubeling.app.running.opening import names_of_cast
+from cubeling.app.running.asked_scenario import names_of_cast
 from cubeling.app.scenarios import Inputs, ScenarioSettings, Situation, make_scenario
 from cubeling.app.scenarios.rules.file import read_rules
 from cubeling.app.scenarios.rules.scenario import rules_scenario

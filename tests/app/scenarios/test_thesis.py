@@ -9,7 +9,7 @@ import pytest
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import EmotionTarget
 from cubeling.app.pipeline.step import Step
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.scenarios.speed import SPEED_MAPS
 from cubeling.app.session import messages
 from cubeling.app.session.encoding import decode

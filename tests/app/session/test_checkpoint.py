@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session.bundled import RECORDED_SCENARIOS, bundled_session
 from cubeling.app.session.encoding import encode
 from cubeling.characters.rendering import create_context

@@ -9,7 +9,7 @@ import pytest
 import tests.sessions
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session import (
     messages,
     session_info,

@@ -10,7 +10,8 @@ import pytest
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.running.opening import intrinsics_for, open_session
+from cubeling.app.running.kept_lens import intrinsics_for
+from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import (
     SessionOptions,

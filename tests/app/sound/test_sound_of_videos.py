@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cubeling.app.commands.play import progress
-from cubeling.app.running.opening import open_sound
+from cubeling.app.running.screens import open_sound
 from cubeling.app.session import SessionOptions
 from cubeling.app.sound import Cue, Mixer, SessionSound, SoundBank, SoundCues
 from cubeling.app.ui.video_file import VideoFile

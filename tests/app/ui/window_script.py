@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.preferences import PreferenceStore
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.ui.cards.shown_step import scaled_rect
 from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import Record, Seek

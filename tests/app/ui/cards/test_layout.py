@@ -8,7 +8,7 @@ import pytest
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import Step
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.ui.cards.layout import MIN_STAY_S, SLIDING_S, CardLayout, Corner, card_box
 from cubeling.tracking import open_source
 from tests.app import session_parts

@@ -15,7 +15,7 @@ from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.step import RobotView
 from cubeling.app.preferences import PreferenceStore
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session import SessionOptions
 from cubeling.app.ui.panels import PANELS
 from cubeling.app.ui.panels.drawing.layer import PanelLayer

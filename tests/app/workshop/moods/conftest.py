@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session import Recorder
 from cubeling.app.workshop.moods import read_history
 from cubeling.robot.protocol.schema import pack

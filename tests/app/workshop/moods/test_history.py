@@ -10,7 +10,7 @@ import pytest
 from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.playground import Playground
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session import START_OVER_EVENT, Recorder
 from cubeling.app.workshop.moods import read_history, read_robot_traces, replay_with, robot_traces
 from cubeling.characters import LocomotionIntent

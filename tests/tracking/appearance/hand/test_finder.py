@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from cubeling.app.running.opening import intrinsics_for
+from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.session.bundled import bundled_session
 from cubeling.tracking.appearance.hand.background import FULL_AGE
 from cubeling.tracking.appearance.hand.finder import MANY_FRAMES, HandFinder
