@@ -330,10 +330,16 @@ def main() -> None:
     small = desk.view(np.asarray(cv2.resize(desk.frame.image, (320, 180)), np.uint8), None, 0.0)
     small = replace(small, matrix=desk.lens.matrix * np.array([[0.25], [0.25], [1.0]]))
     add("white furnace, largest error", furnace(context, small), FURNACE_BAR)
-    for name, busy in itertools.product(("human:metal", *given.models[3:]), (False, True)):
+    metal = [name for name in given.models if name.endswith(":metal")]
+    for name, busy in itertools.product(metal, (False, True)):
         found = card(context, desk, character_of(name), quality, busy)
         when = "just after another change" if busy else "after a quiet while"
-        add(f"{name}, card {when}: shown", found.shown_s, None if busy else SHOWN_BAR_S, "s")
+        add(
+            f"{Path(name).stem}, card {when}: shown",
+            found.shown_s,
+            None if busy else SHOWN_BAR_S,
+            "s",
+        )
         add("  half of it", found.half_s, None, "s")
         add("  most from one picture to the next, mean ΔE", found.pop, POP_BAR)
         add("  the same of 1 % of its pixels", found.worst_pop, None)

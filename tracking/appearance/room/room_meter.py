@@ -197,8 +197,8 @@ class RoomMeter:
         if not len(shown):
             return NOTHING
         pixels = (pixels + 0.5) * scale - 0.5
-        share = _sampled(thing.pixels, pixels) / np.float32(255.0)
-        return near[kept[shown]], share[:, None], _sampled(small, pixels)
+        share = _floats(_sampled(thing.pixels, pixels)[:, None] / np.float32(255.0))
+        return near[kept[shown]], share, _sampled(small, pixels)
 
     def _in_picture(self, places: Array) -> tuple[Indices, Array, Array]:
         """Return which places (n, 3) are in the picture, their pixels, and how far from its edge.
@@ -228,7 +228,8 @@ class RoomMeter:
         linear = cv2.multiply(cv2.LUT(seen, _LINEAR), cv2.merge([known] * 3))
         edges = _floats(cv2.resize(linear, coarse, interpolation=cv2.INTER_AREA)).reshape(-1, 3)
         least = np.float32(MIN_LIGHT)
-        guessed = np.maximum(filled(edges / np.maximum(share, np.float32(1e-6)), share), least)
+        mean = _floats(edges / np.maximum(share, np.float32(1e-6)))
+        guessed = np.maximum(filled(mean, share), least)
         if light is not None:
             unseen = _from_above() @ ((1.0 - share) * guessed)
             missing = light.ambient - _from_above() @ edges
@@ -251,7 +252,7 @@ def _floats(values: NDArray[Any]) -> Floats:
     return np.asarray(values, np.float32)
 
 
-def _bytes(values: Floats | Array) -> Image:
+def _bytes(values: NDArray[Any]) -> Image:
     """Return the nearest bytes of values from 0 to 255."""
     return np.asarray(values + np.float32(0.5), np.uint8)
 

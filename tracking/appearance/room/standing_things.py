@@ -64,7 +64,7 @@ class EmptyTable:
         new = cv2.morphologyEx(new, cv2.MORPH_CLOSE, CLOSING)
         if cv2.countNonZero(new) > MAX_NEW * new.size:
             new[:] = 0
-        self._age = np.asarray(cv2.bitwise_and(cv2.add(self._age, 1.0), new), np.uint8)
+        self._age = np.where(new > 0, np.minimum(self._age, 254) + 1, 0).astype(np.uint8)
         new[self._age > SETTLING_MAPS] = 0
         cv2.copyTo(small, cv2.bitwise_not(new), self.picture)
         return tuple(_things(np.asarray(new, np.uint8)))
