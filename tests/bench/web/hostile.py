@@ -38,7 +38,6 @@ class Player:
         self._tasks = [asyncio.create_task(self._send()), asyncio.create_task(self._read())]
 
     async def _send(self) -> None:
-        await self._socket.send_json({"do": "camera", "name": "bench"})
         for number, jpeg in enumerate(itertools.cycle(frames())):
             await self._socket.send_bytes(pack(PICTURE, number, time.monotonic(), jpeg))
             await asyncio.sleep(1 / 15)
@@ -48,6 +47,8 @@ class Player:
             if message.type == aiohttp.WSMsgType.BINARY and message.data[0] == PICTURE:
                 self.shown += 1
                 await self._socket.send_json({"do": "shown", "id": unpack(message.data)[1]})
+            elif message.type == aiohttp.WSMsgType.TEXT and message.json().get("camera") == "free":
+                await self._socket.send_json({"do": "camera", "name": "bench"})
 
     async def rate(self, seconds: float) -> float:
         """Return how many pictures came back a second."""
