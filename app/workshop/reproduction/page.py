@@ -11,7 +11,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.workshop.pages.page import heading, page, paragraph, table
 from cubeling.app.workshop.pages.report_table import ReportTable
 from cubeling.app.workshop.reproduction.registry import PrintedTable
-from cubeling.app.workshop.reproduction.result import PRINTED, PlottedFigure, Reproduction
+from cubeling.app.workshop.reproduction.result import PRINTED, DrawnFigure, Reproduction
 from cubeling.files import whole_file, write_whole
 
 PAGE = "index.html"
@@ -135,7 +135,7 @@ def _table(content: ReportTable) -> str:
     return table(content, words=words, quiet=PRINTED)
 
 
-def _plots(plots: Sequence[PlottedFigure]) -> list[str]:
+def _plots(plots: Sequence[DrawnFigure]) -> list[str]:
     if not plots:
         return []
     if find_spec("matplotlib") is None:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from cubeling.app.workshop.moods.colors import GRID_COLOR
 from cubeling.app.workshop.moods.plot import FILE_METADATA
 from cubeling.app.workshop.moods.plot_layout import MATPLOTLIB_STYLE
-from cubeling.app.workshop.reproduction.result import PlottedFigure
+from cubeling.app.workshop.reproduction.result import DrawnFigure
 
 STYLE = {
     **MATPLOTLIB_STYLE,
@@ -30,7 +30,7 @@ PICTURE_DPI = 110
 """Of what is not lines [1/in]."""
 
 
-def inline_svg(plot: PlottedFigure) -> str:
+def inline_svg(plot: DrawnFigure) -> str:
     """Return a plot as an element of HTML: the same bytes for the same figures."""
     buffer = io.StringIO()
     with matplotlib.rc_context(STYLE):

@@ -40,7 +40,7 @@ class ReproductionRequest:
 
 
 @dataclass(frozen=True)
-class PlottedFigure:
+class DrawnFigure:
     """A figure of the page."""
 
     title: str
@@ -66,5 +66,5 @@ class Reproduction:
     differs: str
     """What differs from the printed figures, and why."""
 
-    plots: tuple[PlottedFigure, ...] = ()
+    plots: tuple[DrawnFigure, ...] = ()
     """The figures that belong to it, which matplotlib draws."""

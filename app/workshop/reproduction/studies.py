@@ -14,11 +14,7 @@ import numpy as np
 
 from cubeling.app.workshop.moods.colors import CURVE_STYLES, SECONDARY_COLOR
 from cubeling.app.workshop.pages.report_table import ReportTable, figure, percent
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.app.workshop.study.bundled import (
     gesture_and_speech,
     single_facial_actions,
@@ -126,11 +122,11 @@ def gesture_votes(request: ReproductionRequest) -> Reproduction:
         "has the figures of the tables without their numbers, and of the two figures only that "
         "they are box plots.",
         (
-            PlottedFigure(
+            DrawnFigure(
                 "Figure 4.13: scores of the conditions against each other, counted",
                 partial(_draw_votes, gesture_and_speech.COUNTS, False),
             ),
-            PlottedFigure(
+            DrawnFigure(
                 "Figure 4.14: scores against the original, counted",
                 partial(_draw_votes, gesture_and_speech.COUNTS, True),
             ),
@@ -186,11 +182,9 @@ def vleo_and_pleo(request: ReproductionRequest) -> Reproduction:
         "turns on where Pleo's mood comes nearer. 27 % faster is 23.6 % of the printed means. Only "
         "the text about the figures is left.",
         (
-            PlottedFigure("Figure 5.22: is Pleo happy, is Pleo angry", _draw_answers, (8.8, 2.6)),
-            PlottedFigure(
-                "Figure 5.23: times of the tasks", partial(_draw_times, times), (8.8, 2.4)
-            ),
-            PlottedFigure("Figure 5.24: how they like to play most", _draw_preference, (8.8, 1.5)),
+            DrawnFigure("Figure 5.22: is Pleo happy, is Pleo angry", _draw_answers, (8.8, 2.6)),
+            DrawnFigure("Figure 5.23: times of the tasks", partial(_draw_times, times), (8.8, 2.4)),
+            DrawnFigure("Figure 5.24: how they like to play most", _draw_preference, (8.8, 1.5)),
         ),
     )
 
@@ -236,11 +230,11 @@ def facial_actions(request: ReproductionRequest) -> Reproduction:
         "factor is printed by itself, so that the simulated ones have no interaction. "
         "cubeling study faces draws the 128 stimuli with our renderer.",
         (
-            PlottedFigure(
+            DrawnFigure(
                 "Table 4.3: identified at high and at low intensity",
                 partial(_draw_actions, tables[0]),
             ),
-            PlottedFigure(
+            DrawnFigure(
                 "Table 4.4: identified in animations and in pictures",
                 partial(_draw_actions, tables[1]),
             ),

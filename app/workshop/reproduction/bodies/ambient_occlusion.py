@@ -22,11 +22,7 @@ from cubeling.app.workshop.reproduction.bodies.occlusion_timing import (
     fit_line,
     measure,
 )
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.characters.motion import Array
 from cubeling.characters.rendering import (
     AmbientOcclusion,
@@ -173,11 +169,11 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         + ("Here the processor draws, and on fewer pixels. " if software else "")
         + 'Of figure 3.10, made by Yee\'s measure, only "remains low" is printed; ours is ΔE76.',
         (
-            PlottedFigure(
+            DrawnFigure(
                 "Table 3.1: time by k, over that of the full form with k = 5",
                 partial(_draw_times, took),
             ),
-            PlottedFigure(
+            DrawnFigure(
                 f"Figure 3.10: {name}, k = {samples}; full, separable, and their difference "
                 "in Lab (white: none)",
                 partial(_draw_pictures, pictures, apart),

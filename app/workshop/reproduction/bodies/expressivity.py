@@ -12,11 +12,7 @@ from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
 from cubeling.app.behaving.voice import SilentSource
 from cubeling.app.workshop.moods.colors import CURVE_STYLES
 from cubeling.app.workshop.pages.report_table import ReportTable
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.characters import Character, Pose
 from cubeling.characters.behaviour import GestureCollection, GestureExpressivity, natural_times
 from cubeling.characters.motion import Array
@@ -110,12 +106,12 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         "which settings it shows is not known. Openness, fluidity, bias and tension are as written "
         "here: python -m tests.bench.expressivity has what each slider moves.",
         (
-            PlottedFigure(
+            DrawnFigure(
                 "Figure 8.13, ours: small and weak above, large and powerful below",
                 partial(_draw_strips, body, shown),
                 (8.8, 5.2),
             ),
-            PlottedFigure(
+            DrawnFigure(
                 "Paths of the wrists from the front, and speed of the right one",
                 partial(_draw_paths, shown),
                 (8.8, 3.2),

@@ -16,11 +16,7 @@ from cubeling.app.workshop.reproduction.gesturing.spoken import (
     bundled_library,
     speeches,
 )
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.characters.motion import Array, GesturePlanner, IntensityRule, SynchronyRule
 
 if TYPE_CHECKING:
@@ -110,8 +106,8 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         "has tails. Strengths of the library are others, so that the line is fitted to it; the "
         "printed band is that of its actor. Of 0.1 ± 0.2 s, 69 % would lead (erratum: 71.72 %).",
         (
-            PlottedFigure("Figure 4.7: how long gestures lead", partial(_draw_leads, found)),
-            PlottedFigure(
+            DrawnFigure("Figure 4.7: how long gestures lead", partial(_draw_leads, found)),
+            DrawnFigure(
                 "Figure 4.8: strength of gesture and of accent", partial(_draw_bands, own, rule)
             ),
         ),

@@ -22,11 +22,7 @@ from cubeling.app.workshop.reproduction.motion_graphs.summary import (
     printed_value,
     summarize,
 )
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.characters import Character
 from cubeling.characters.model import with_root_joint
 from cubeling.characters.motion import DEFAULT_RATE_HZ, MotionLibrary
@@ -117,14 +113,14 @@ def _with_spread(estimate: Estimate) -> str:
     return f"{estimate.text} ({estimate.spread})" if estimate.spread else estimate.text
 
 
-def plots_of(measured: Measurement) -> tuple[PlottedFigure, ...]:
+def plots_of(measured: Measurement) -> tuple[DrawnFigure, ...]:
     """Return connectivity and cost against the threshold, of one choice of clips."""
     shown = (
         ("Figure 3.14", measured.connectivity, "share of frames connected"),
         ("Figure 3.15", measured.cost, "mean cost of a transition"),
     )
     return tuple(
-        PlottedFigure(f"{number}: {label} by split profile, ours", partial(_draw, curves, label))
+        DrawnFigure(f"{number}: {label} by split profile, ours", partial(_draw, curves, label))
         for number, curves, label in shown
         if curves
     )

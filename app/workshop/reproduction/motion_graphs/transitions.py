@@ -7,11 +7,7 @@ from cubeling.app.workshop.motion_graphs.recordings import gather
 from cubeling.app.workshop.motion_graphs.transition import FoundTransition, find_transitions
 from cubeling.app.workshop.pages.report_table import ReportTable
 from cubeling.app.workshop.reproduction.motion_graphs.body_parts import CHOICES, chosen_clips
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.characters import Character
 from cubeling.characters.model import with_root_joint
 from cubeling.characters.motion import DEFAULT_RATE_HZ, MotionLibrary, PartMove, analyse
@@ -58,7 +54,7 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         "and run are others. 0.01 s is less than a frame at 60 Hz: at the next frame. Equation 3.3 "
         "has one duration for all parts once their paths are scaled to meet, and others before.",
         tuple(
-            PlottedFigure(f"Figures 3.8 to 3.10, ours: {title}", partial(_draw, library, shown))
+            DrawnFigure(f"Figures 3.8 to 3.10, ours: {title}", partial(_draw, library, shown))
             for title, shown in (
                 ("parts leave and arrive one after the other", (ours,)),
                 ("the whole body, parts as printed, and our parts", (whole, printed, ours)),

@@ -6,11 +6,7 @@ from functools import partial
 import numpy as np
 
 from cubeling.app.workshop.pages.report_table import ReportTable, figure
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.app.workshop.reproduction.standing.idle_study import generated, perlin
 from cubeling.app.workshop.reproduction.standing.people import read_people
 from cubeling.characters import Character, Clip
@@ -69,7 +65,7 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         f"Nearer than Perlin's are ours in {nearer[0]} of {len(people)}, its own extrema in "
         f"{nearer[1]}.",
         (
-            PlottedFigure(
+            DrawnFigure(
                 f"Figures 3.8 and 3.12, ours: {people[0].name}; arrows show how often which "
                 "balance follows",
                 partial(_draw, draw, databases[0]),

@@ -14,11 +14,7 @@ from numpy.typing import NDArray
 from cubeling.app.workshop.moods.colors import CURVE_STYLES, SECONDARY_COLOR
 from cubeling.app.workshop.pages.report_table import ReportTable, figure, percent
 from cubeling.app.workshop.reproduction.motion_graphs.summary import bootstrap_interval
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.app.workshop.reproduction.standing.people import read_people
 from cubeling.app.workshop.study.bundled import whose_idle_motion
 from cubeling.characters import Pose
@@ -262,7 +258,7 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         "they know every person's habits by heart, and name more than people can. Nothing judges "
         "gender here. AUC: 0.5 is chance; the learned half and the judged half share no frame. The "
         "last three sources are baselines: noise for each joint or component, and a repeated clip.",
-        (PlottedFigure("How often the person is named, by source", partial(_draw, found)),),
+        (DrawnFigure("How often the person is named, by source", partial(_draw, found)),),
     )
 
 

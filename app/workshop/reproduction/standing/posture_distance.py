@@ -13,11 +13,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.workshop.idle_plot import body_of
 from cubeling.app.workshop.moods.colors import CURVE_STYLES, SECONDARY_COLOR
 from cubeling.app.workshop.pages.report_table import ReportTable, figure, percent
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 from cubeling.characters import Character, CharacterError, Clip, read_motions
 from cubeling.characters.motion import Array, PostureSpace, PostureVectors
 from cubeling.characters.rendering import PortraitRenderer, create_context
@@ -153,11 +149,11 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         "for those weights; errors of the other tables are in other units. Consecutive frames are "
         "in a set, as there.",
         (
-            PlottedFigure(
+            DrawnFigure(
                 "Figures 3.3 to 3.5: success, mean and greatest error by the number of components",
                 partial(_draw_curves, curves),
             ),
-            PlottedFigure(
+            DrawnFigure(
                 "Figure 3.6: pairs of postures at the printed distances (no weights)",
                 partial(_draw_pairs, kind, chosen, coordinates),
                 (8.8, 3.0),

@@ -10,11 +10,7 @@ from matplotlib.figure import Figure
 from cubeling.app.workshop.pages.report_table import ReportTable
 from cubeling.app.workshop.reproduction import page, registry
 from cubeling.app.workshop.reproduction.registry import TABLES
-from cubeling.app.workshop.reproduction.result import (
-    PlottedFigure,
-    Reproduction,
-    ReproductionRequest,
-)
+from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
 
 
 def test_a_page_and_a_csv_hold_the_printed_figures_and_ours(cubeling, monkeypatch) -> None:
@@ -75,7 +71,7 @@ class _Anything:
 
     def __getattr__(self, name: str) -> Callable[[ReproductionRequest], Reproduction]:
         table = ReportTable("t", ("", "printed", "ours"), (("a", "1", "2"),))
-        return lambda request: Reproduction((table,), "x", "y", (PlottedFigure("p", _draw_line),))
+        return lambda request: Reproduction((table,), "x", "y", (DrawnFigure("p", _draw_line),))
 
 
 def _draw_line(figure: Figure) -> None:
