@@ -154,9 +154,9 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
                 partial(_draw_curves, curves),
             ),
             DrawnFigure(
-                "Figure 3.6: pairs of postures at the printed distances (no weights)",
-                partial(_draw_pairs, kind, chosen, coordinates),
-                (8.8, 3.0),
+                "Figure 3.6: pairs of postures at the printed distances, weights: variances",
+                partial(_draw_pairs, kind, chosen[0], coordinates[0] * np.sqrt(space.variances)),
+                (8.8, 2.2),
             ),
         ),
     )
@@ -196,11 +196,9 @@ def _draw_curves(curves: Mapping[str, NeighbourCurves], sheet: "Figure") -> None
     panels[0].legend(loc="lower right", fontsize=8)
 
 
-def _draw_pairs(
-    kind: PostureVectors, chosen: Sequence[Array], coordinates: Sequence[Array], sheet: "Figure"
-) -> None:
+def _draw_pairs(kind: PostureVectors, vectors: Array, rows: Array, sheet: "Figure") -> None:
+    """Draw pairs of postures, (n, size), whose weighted coordinates are so far apart."""
     body = body_of(kind.skeleton)
-    vectors, rows = chosen[0], coordinates[0]
     apart = np.sqrt(_squares(rows))
     poses = []
     for wanted in DISTANCES:
