@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from cubeling.affect import Emotion, Personality
 from cubeling.app.errors import AppError
@@ -13,9 +13,12 @@ from cubeling.app.pipeline.table.situation import Situation
 from cubeling.app.pipeline.table.spoken_line import LEAD, Lines, SpokenLine
 from cubeling.app.pipeline.table.stage_sounds import PlayedSound, SoundClip, SoundSource
 from cubeling.characters import Character, CharacterCommand, RootDelta, meanings_of
-from cubeling.characters.behaviour import DialogueScript
 from cubeling.characters.rendering import FloorPath
 from cubeling.tracking import CubeControls, CubeModel
+
+# Few scenarios are dialogues: what that takes is loaded for those.
+if TYPE_CHECKING:
+    from cubeling.characters.behaviour import DialogueScript
 
 
 @dataclass(frozen=True)
@@ -349,7 +352,7 @@ class GesturingScenario(Protocol):
 class ConversingScenario(ListeningScenario, GesturingScenario, Protocol):
     """A scenario that answers by a script."""
 
-    script: DialogueScript
+    script: "DialogueScript"
     """What it has an answer to."""
 
     @property

@@ -12,7 +12,6 @@ from cubeling.app.output_path import default_folder
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import (
-    ConversingScenario,
     ListeningScenario,
     SoundingScenario,
 )
@@ -29,10 +28,10 @@ from cubeling.app.running.recording.wire_tap import WireTap
 from cubeling.app.running.robots import RobotLine, is_real_robot
 from cubeling.app.running.screens import open_screen, open_sound
 from cubeling.app.running.typed_lines import TypedLines
-from cubeling.app.scenarios import Scenario, scenario_cube
+from cubeling.app.scenarios import scenario_cube
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.speaking.listener import PushToTalk
-from cubeling.app.speaking.model.answerer import Answerer
+from cubeling.app.speaking.model.opening import open_answerer
 from cubeling.app.speaking.opening import open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
@@ -174,7 +173,8 @@ def open_session(
         stepped = pace is None and not source.live
         replies = isinstance(scenario, ListeningScenario)
         # What another scenario said is no reply.
-        said = is_replay(replayed, options) or not replies
+        replays = is_replay(replayed, options)
+        said = replays or not replies
         lines = replayed.lines if replayed is not None and said else None
         speaker = open_speaker(
             options,
@@ -186,7 +186,7 @@ def open_session(
         )
         closing.callback(speaker.close)
         stage_sounds: dict[str, SoundClip] = {}
-        if isinstance(scenario, SoundingScenario) and not is_replay(replayed, options):
+        if isinstance(scenario, SoundingScenario) and not replays:
             from cubeling.app.sound.stage_sounds import open_clips
 
             stage_sounds = open_clips(scenario.sounds)
@@ -226,7 +226,7 @@ def open_session(
             speaker=speaker,
             stage_sounds=stage_sounds,
             listener=PushToTalk(),
-            answerer=_answerer(options, scenario, replayed, waits=stepped),
+            answerer=open_answerer(options, None if replays else scenario, waits=stepped),
             robot=robot,
             second_robot=second,
             wire=wire,
@@ -247,24 +247,6 @@ def open_session(
         closing.callback(session.close)
         closing.callback(clock.release)  # the robot's connection is closed in real time
         yield session
-
-
-def _answerer(
-    options: SessionOptions,
-    scenario: Scenario,
-    replayed: SessionFile | None,
-    *,
-    waits: bool,
-) -> Answerer:
-    """Return what asks the language model that the user has named; a replay has its answers."""
-    is_asked = options.model is not None and not is_replay(replayed, options)
-    if not is_asked or not isinstance(scenario, ConversingScenario):
-        return Answerer()
-    from cubeling.app.speaking.model.chat import ChatModel
-
-    assert options.model is not None
-    model = ChatModel(options.model, options.model_name, scenario.script, scenario.gestures)
-    return Answerer(model, waits=waits)
 
 
 def _pace(

@@ -4,7 +4,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -13,15 +13,12 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.sound import NoSoundError
 from cubeling.app.speaking.microphone import MICROPHONE_HZ, SILENT_S, Microphone
 from cubeling.characters import CharacterError
-from cubeling.characters.behaviour import DialogueScript, phrases_of
-from cubeling.characters.speech import (
-    RECOGNIZED_LANGUAGE,
-    Samples,
-    SpeechRecognizer,
-    VoiceError,
-    espeak,
-    listening_problem,
-)
+from cubeling.characters.speech import Samples
+
+# Few sessions listen: what that takes is loaded for those.
+if TYPE_CHECKING:
+    from cubeling.characters.behaviour import DialogueScript
+    from cubeling.characters.speech import SpeechRecognizer
 
 MAX_LISTEN_S = 8.0
 """Who holds a microphone open longer has forgotten it [s]."""
@@ -47,7 +44,7 @@ class SoundInput(Protocol):
         ...
 
 
-def recognizer_for(script: DialogueScript, language: str) -> SpeechRecognizer:
+def recognizer_for(script: "DialogueScript", language: str) -> "SpeechRecognizer":
     """Return what hears the phrases of a script.
 
     Raises
@@ -57,6 +54,15 @@ def recognizer_for(script: DialogueScript, language: str) -> SpeechRecognizer:
     CharacterError
         Nothing in the script can be heard.
     """
+    from cubeling.characters.behaviour import phrases_of
+    from cubeling.characters.speech import (
+        RECOGNIZED_LANGUAGE,
+        SpeechRecognizer,
+        VoiceError,
+        espeak,
+        listening_problem,
+    )
+
     if language != RECOGNIZED_LANGUAGE:
         raise AppError(f"speech is understood in English only, not in '{language}': type instead")
     problem = listening_problem()
@@ -93,7 +99,7 @@ class PushToTalk:
         self._notices: queue.Queue[str] = queue.Queue()
         self._ended = threading.Event()
         self._thread: threading.Thread | None = None
-        self._known: tuple[DialogueScript, SpeechRecognizer] | None = None
+        self._known: tuple[DialogueScript, str, SpeechRecognizer] | None = None
 
     @property
     def listening(self) -> bool:
@@ -101,7 +107,7 @@ class PushToTalk:
         alive = self._thread is not None and self._thread.is_alive()
         return alive and not self._ended.is_set()
 
-    def begin(self, script: DialogueScript, language: str) -> None:
+    def begin(self, script: "DialogueScript", language: str) -> None:
         """Listen for the phrases of a script, until `end` or for `MAX_LISTEN_S`."""
         if self._thread is not None and self._thread.is_alive():
             self._notices.put("One moment: what you said before is still being heard")
@@ -136,7 +142,7 @@ class PushToTalk:
         if self._thread is not None:
             self._thread.join(CLOSE_TIMEOUT_S)
 
-    def _run(self, script: DialogueScript, language: str) -> None:
+    def _run(self, script: "DialogueScript", language: str) -> None:
         try:
             recognizer = self._recognizer(script, language)
             microphone = self._open()
@@ -157,10 +163,10 @@ class PushToTalk:
         else:
             self._notices.put(NOTHING_HEARD)
 
-    def _recognizer(self, script: DialogueScript, language: str) -> SpeechRecognizer:
-        if self._known is None or self._known[0] is not script or language != RECOGNIZED_LANGUAGE:
-            self._known = script, recognizer_for(script, language)
-        return self._known[1]
+    def _recognizer(self, script: "DialogueScript", language: str) -> "SpeechRecognizer":
+        if self._known is None or self._known[:2] != (script, language):
+            self._known = script, language, recognizer_for(script, language)
+        return self._known[2]
 
     def _record(self, microphone: SoundInput) -> Samples:
         """Return what is said until the end, (n,)."""

@@ -6,8 +6,7 @@ import threading
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import ModelAnswer, ModelQuestion
 from cubeling.app.pipeline.step import Step
-from cubeling.app.speaking.model.chat import TIMEOUT_S
-from cubeling.app.speaking.model.protocol import LanguageModel, ModelError
+from cubeling.app.speaking.model.protocol import TIMEOUT_S, LanguageModel, ModelError
 from cubeling.characters.speech import TaggedText
 
 WAIT_S = TIMEOUT_S + 2.0

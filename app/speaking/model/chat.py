@@ -19,16 +19,13 @@ import msgspec
 
 from cubeling.affect import Emotion
 from cubeling.app.errors import AppError
-from cubeling.app.speaking.model.protocol import ModelError
+from cubeling.app.speaking.model.protocol import TIMEOUT_S, ModelError
 from cubeling.app.speaking.model.tagged_reply import tagged_reply
 from cubeling.characters.behaviour import DialogueScript
 from cubeling.toml_file import printable
 
 KEY_VARIABLE = "CUBELING_MODEL_KEY"
 """The variable of the environment that holds the key of the address, if it needs one."""
-
-TIMEOUT_S = 8.0
-"""How long an answer may take from its question to its last byte [s]."""
 
 MAX_ANSWER_BYTES = 262_144
 """Largest answer that is read [B]: a thousand times what is said."""

@@ -5,6 +5,9 @@ from typing import Protocol
 from cubeling.affect import Emotion
 from cubeling.app.errors import AppError
 
+TIMEOUT_S = 8.0
+"""How long a reply may take from its question to its last byte [s]."""
+
 
 class ModelError(AppError):
     """A model that gave no reply, and why, in one line."""

@@ -9,9 +9,9 @@ import pytest
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.scenarios import find_scenario
 from cubeling.app.sound import NoSoundError
-from cubeling.app.speaking import listener as module
 from cubeling.app.speaking.listener import MAX_LISTEN_S, NOTHING_HEARD, PushToTalk
 from cubeling.app.speaking.microphone import MICROPHONE_HZ, SILENT_S
+from cubeling.characters import speech
 
 SCRIPT = find_scenario("talk").script
 
@@ -54,7 +54,7 @@ class Clock:
 @pytest.fixture(autouse=True)
 def recognizer(monkeypatch):
     FakeMicrophone.opened = FakeMicrophone.closed = 0
-    monkeypatch.setattr(module, "SpeechRecognizer", lambda *_: Recognizer())
+    monkeypatch.setattr(speech, "SpeechRecognizer", lambda *_: Recognizer())
 
 
 def outcome_of(listener, *, end=True, language="en"):
@@ -123,7 +123,7 @@ def test_who_speaks_again_before_the_words_are_known_is_told():
             return "hello"
 
     listener = PushToTalk(FakeMicrophone)
-    listener._known = SCRIPT, Slow()
+    listener._known = SCRIPT, "en", Slow()
     listener.begin(SCRIPT, "en")
     listener.end()
     listener.begin(SCRIPT, "en")
