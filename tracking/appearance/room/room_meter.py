@@ -39,6 +39,10 @@ MIN_CHANGE = 3.0
 """Difference from the picture of the last map from which on there is a new one: the root of the
 mean square, of 255. The noise of a camera is less in a picture of so few pixels."""
 
+MIN_DISTANCE_M = 0.06
+"""Least distance of what stands on the table from the centre: what is nearer would hide all else,
+and no character is where it is [m]."""
+
 MAX_MOVE = 2e-3
 """How much the numbers of the table's pose may change until directions are found again [m, 1]."""
 
@@ -181,6 +185,8 @@ class RoomMeter:
         if rays[0, 1] > -1e-6:  # its foot is above the horizon
             return NOTHING
         foot = camera - camera[1] / rays[0, 1] * rays[0]
+        if np.hypot(*(foot - CENTRE_M)[[0, 2]]) < MIN_DISTANCE_M:
+            return NOTHING
         # It is on the upright plane through the foot, turned to the camera.
         facing = (camera - foot) * (1.0, 0.0, 1.0)
         ways = facing @ (foot - camera) / (rays[1:] @ facing)

@@ -108,6 +108,13 @@ def test_a_card_that_was_there_lies_on_the_table_and_one_that_goes_leaves_nothin
     assert np.abs(light_of(first) - light_of(again)).max() < 0.01
 
 
+def test_what_stands_in_the_centre_hides_nothing():
+    meter = RoomMeter(LENS)
+    first = light_of(meter.update(grey(70), TABLE, None, 0.0))
+    there = light_of(meter.update(with_card(grey(70), 0.0, 0.02), TABLE, None, 1.0))
+    assert np.abs(first - there).max() < 0.01
+
+
 def test_light_that_is_switched_on_is_nothing_that_stands():
     meter = RoomMeter(LENS)
     meter.update(grey(70), TABLE, None, 0.0)
