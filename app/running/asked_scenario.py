@@ -49,7 +49,7 @@ def names_of_cast(options: SessionOptions, scenario: Scenario) -> tuple[str, ...
     return (*named, *[scenario.character] * (options.players - len(named)))
 
 
-def cast_of(options: SessionOptions, scenario: Scenario) -> list[Character]:
+def load_cast(options: SessionOptions, scenario: Scenario) -> list[Character]:
     """Load all characters under their names, that of the first player first.
 
     Raises

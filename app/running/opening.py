@@ -17,7 +17,7 @@ from cubeling.app.pipeline.scenario import (
 )
 from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.preferences import PreferenceStore
-from cubeling.app.running.asked_scenario import cast_of, is_replay, scenario_of, settings_of
+from cubeling.app.running.asked_scenario import is_replay, load_cast, scenario_of, settings_of
 from cubeling.app.running.clock import Pace, SessionClock
 from cubeling.app.running.front_end import FrontEnd
 from cubeling.app.running.instrument import Instrument
@@ -112,7 +112,7 @@ def open_session(
     in_play = [*cubes, *map(CubeModel.load, (own, f"{own}{SECOND}")[len(cubes) :])]
     cube, *further_cubes = in_play[: options.players]
     scenario = scenario_of(options, options.scenario, cube)
-    character, *others = cast = cast_of(options, scenario)
+    character, *others = cast = load_cast(options, scenario)
     controller = choose_controller(options.controller, character, options.motions)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
     for instrument in instruments:

@@ -27,8 +27,11 @@ def export(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the tables.")],
     participant: Labels = None,
     condition: Labels = None,
+    bvh: Annotated[
+        bool, typer.Option("--bvh", help="Write the motion of each character as a .bvh file too.")
+    ] = False,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Overwrite the tables of an earlier export.")
+        bool, typer.Option("--overwrite", help="Overwrite the files of an earlier export.")
     ] = False,
     salvage: Annotated[
         bool, typer.Option(help="Export the intact part of sessions that were cut off.")
@@ -45,6 +48,8 @@ def export(
     from cubeling.app.workshop.exporting.writing import EXPORT_FILES
 
     check_output_folder(output, EXPORT_FILES, "tables", overwrite=overwrite)
+    if bvh and not overwrite and next(output.glob("*.bvh"), None):
+        raise AppError(f"'{output}' holds motions already: choose another one or add --overwrite")
     people = labels(participant, len(sessions), "--participant")
     conditions = labels(condition, len(sessions), "--condition")
     names = [path.stem for path in sessions]
@@ -64,9 +69,19 @@ def export(
         ]
         with output_folder(output):
             rows = write_tables(complete, output)
+            motions = {}
+            if bvh:
+                from cubeling.app.workshop.exporting.motion import write_motions
+
+                for each in complete:
+                    motions.update(
+                        write_motions(each.complete or each.path, output, each.path.stem)
+                    )
     console = Console(highlight=False, soft_wrap=True)
     for name, count in rows.items():
         console.print(f"{name:11} {count:8} {'row' if count == 1 else 'rows'}")
+    for name, count in motions.items():
+        console.print(f"{escape(name)} {count:8} frames")
     console.print(f"[bold]{escape(str(output))}[/] holds the tables as .csv and .jsonl")
 
 

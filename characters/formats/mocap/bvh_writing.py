@@ -19,11 +19,26 @@ _END_M = 0.05  # length of a joint that nothing follows
 _STILL_M = 1e-6  # a joint that moves less has no positions
 
 
-def save_bvh(clip: Clip, skeleton: Skeleton, anatomy: Anatomy, path: Path) -> None:
+def save_bvh(
+    clip: Clip,
+    skeleton: Skeleton,
+    anatomy: Anatomy,
+    path: Path,
+    table_from_character: Array | None = None,
+) -> None:
     """Write a clip as a .bvh file: the hips and all joints below them.
 
     Joints of the file are not rotated at rest. Lengths are in metres. Joints that move in the frame
     of their parent have positions too. Scales and morphs are left out.
+
+    Parameters
+    ----------
+    clip, skeleton, anatomy
+        The motion, and the body that makes it.
+    path
+        The file.
+    table_from_character
+        Where the body stands in each frame, (frames, 4, 4), scaled; None for where the clip has it.
 
     Raises
     ------
@@ -36,8 +51,12 @@ def save_bvh(clip: Clip, skeleton: Skeleton, anatomy: Anatomy, path: Path) -> No
     joints = subtree(skeleton, hips)
     rest = skeleton.rest.globals(skeleton)
     placed = clip.poses.globals(skeleton)[:, joints]
-    turns = rotations.from_matrix(placed[..., :3, :3])
-    still = rotations.from_matrix(rest[joints, :3, :3])
+    size = 1.0
+    if table_from_character is not None:
+        placed = table_from_character[:, None] @ placed
+        size = float(np.linalg.norm(table_from_character[0, :3, 0]))
+    turns = rotations.from_matrix(_unscaled(placed[..., :3, :3]))
+    still = rotations.from_matrix(_unscaled(rest[joints, :3, :3]))
     facing = rotations.multiply(turns, rotations.conjugate(still))
     row = {joint: number for number, joint in enumerate(joints)}
     above = [row.get(skeleton.parents[joint], -1) for joint in joints]
@@ -47,7 +66,7 @@ def save_bvh(clip: Clip, skeleton: Skeleton, anatomy: Anatomy, path: Path) -> No
     places[:, 1:] = rotations.rotate(
         rotations.conjugate(facing[:, above[1:]]), places[:, 1:] - places[:, above[1:]]
     )
-    offsets = rest[joints, :3, 3] - rest[[skeleton.parents[j] for j in joints], :3, 3]
+    offsets = size * (rest[joints, :3, 3] - rest[[skeleton.parents[j] for j in joints], :3, 3])
     moving = np.abs(places - offsets).max((0, 2)) > _STILL_M
     moving[0], offsets[0] = True, 0.0
     angles = np.degrees(_zxy(rotations.to_matrix(local)))
@@ -62,6 +81,12 @@ def save_bvh(clip: Clip, skeleton: Skeleton, anatomy: Anatomy, path: Path) -> No
     lines += [f"Frames: {len(values)}", f"Frame Time: {1.0 / clip.rate:.8f}"]
     lines += [" ".join(f"{value:.7g}" for value in frame) for frame in values.tolist()]
     write_whole(path, "\n".join(lines) + "\n", CharacterError)
+
+
+def _unscaled(matrices: Array) -> Array:
+    """Return the rotations (…, 3, 3) in matrices that scale before they rotate."""
+    unscaled: Array = matrices / np.linalg.norm(matrices, axis=-2, keepdims=True)
+    return unscaled
 
 
 def _depth_first(above: list[int]) -> list[int]:

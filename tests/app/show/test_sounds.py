@@ -106,7 +106,7 @@ def test_a_replay_has_the_sounds_without_their_files(tmp_path, short_session):
 
     def hear(name, session):
         mixer = Mixer(SoundBank({name: [] for name in SOUNDS}))  # no steps, no cube
-        sound = SessionSound(mixer, moods=False)
+        sound = SessionSound(mixer, moods=(False,))
         blocks = []
 
         def add(step):

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import cv2
 import numpy as np
 
-from cubeling.app.behaving.player import BehaviourOptions, BehaviourPlayer
+from cubeling.app.behaving.player import BehaviourPlayer
 from cubeling.app.behaving.voice import SilentSource
+from cubeling.app.show.blocks import BehaviourOptions
 from cubeling.app.workshop.moods.colors import CURVE_STYLES
 from cubeling.app.workshop.pages.report_table import ReportTable
 from cubeling.app.workshop.reproduction.result import DrawnFigure, Reproduction, ReproductionRequest
@@ -67,7 +68,7 @@ def play(body: Character, how: GestureExpressivity, rate: float = RATE_HZ) -> Pl
     """Return how the gesture is performed, by all layers of the body."""
     player = BehaviourPlayer(body, SilentSource("no voice"), BehaviourOptions(expressivity=how))
     player.settle(SETTLE_S, rate)
-    player.play_block(
+    player.director.accept(
         '<bml id="b" xmlns="http://www.bml-initiative.org/bml/bml-1.0">'
         f'<gesture id="g" lexeme="{GESTURE}"/></bml>'
     )
