@@ -5,13 +5,16 @@ This is the one place that names them: files, data dictionary and docs/exporting
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.session import SessionFile, SessionOptions
-from cubeling.app.session.encoding import IMAGE_TOPIC
+from cubeling.app.session.acts import WizardAct, act_words
+from cubeling.app.session.encoding import IMAGE_TOPIC, INPUTS_TOPIC
 from cubeling.app.workshop.exporting.column import Cell, Column, Table, field, vector
 from cubeling.app.workshop.moods import read_robot_traces
 from cubeling.characters import CharacterCommand, PosedCharacter
@@ -57,6 +60,31 @@ def read_robot(session: SessionFile) -> Iterator[tuple[float, Any]]:
     """Yield what the robot was asked, answered and showed, with its times [s]."""
     for event in read_robot_traces(session.path).events:
         yield event.time, event
+
+
+@dataclass(frozen=True)
+class ToldAct:
+    """Something that a wizard or another program told a character to do."""
+
+    act: Act
+    """What it was told."""
+
+    name: str
+    """The same in words."""
+
+    noted: WizardAct | None
+    """What the wizard's desk says of it; None for another program's."""
+
+
+def read_acts(session: SessionFile) -> Iterator[tuple[float, ToldAct]]:
+    """Yield what the characters were told to do, with the times [s] of the frames."""
+    noted = {each.number: each for each in session.wizard_acts}
+    for time, inputs in sorted(session.inputs.items()):
+        for act in inputs.acts:
+            if act.note is None:
+                yield time, ToldAct(act, act_words(act), None)
+            elif act.kind not in ("cue", "undo"):  # they are columns of the act
+                yield time, ToldAct(act, act_words(act), noted[act.note.number])
 
 
 def read_marks(session: SessionFile) -> Iterator[tuple[float, Any]]:
@@ -309,6 +337,25 @@ EXPORT_TABLES = (
             field("reason", "", "Why it was refused"),
         ),
         read_robot,
+    ),
+    Table(
+        "acts",
+        INPUTS_TOPIC,
+        (
+            Column("by", "", "wizard, or program for another program",
+                   lambda told: "program" if told.noted is None else "wizard"),
+            field("who", "", "Who of the cast did it; empty for the first", "act.who"),
+            field("kind", "", "action, gesture, say, emotion, go, or play for the robot; "
+                   "a program's undo", "act.kind"),
+            field("name", "", "The action, gesture, text, emotion or place, or release"),
+            field("weight", "", "Intensity of an action, −1 to 1", "act.weight"),
+            field("number", "", "Of the wizard's act in its session; as the next ones, empty for a "
+                   "program's", "noted.number"),
+            field("cue", "", "The cue that it answers; empty for none", "noted.cue"),
+            field("delay_s", "s", "Time from the cue to the act at the desk", "noted.delay_s"),
+            field("undone", "", "1 if the wizard took it back as an error", "noted.undone"),
+        ),
+        read_acts,
     ),
     Table(
         "marks",

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.table.acts import Act, ActNote
 from cubeling.app.session import Recorder, frame_encoder, messages
 from cubeling.app.session.encoding import MESSAGE_TYPES, decode
 from cubeling.app.workshop.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows, writing
@@ -185,3 +187,36 @@ def test_a_session_that_was_cut_off_can_be_salvaged_over_old_tables(cubeling, sh
     for options in ((), ("--overwrite",)):
         assert cubeling("export", "cut.mcap", "-o", "out", "--salvage", *options)[0] == 0
     assert 0 < len(table("emotions")) < 60
+
+
+def test_what_a_wizard_and_a_program_did_is_a_table(cubeling):
+    told = [
+        (Act("cue", "asks", note=ActNote(1)),),
+        (Act("say", "Hello", note=ActNote(2, "asks", 0.4)), Act("go", place=(0.1, -0.05))),
+        (Act("action", "wave", 0.5, note=ActNote(3)),),
+        (Act("undo", note=ActNote(2)),),
+    ]
+    playground = Playground("companion", Intrinsics.guess((64, 48)))
+    with Recorder(Path("told.mcap"), {"scenario": "companion"}) as recorder:
+        encode = frame_encoder("jpeg", (64, 48), 30.0)
+        for index, acts in enumerate(told):
+            frame = encode(Frame(np.zeros((48, 64, 3), np.uint8), 0.1 * index, index))
+            recorder.write(playground.step(frame), Inputs(acts=acts))
+    playground.close()
+    assert cubeling("export", "told.mcap", "-o", "out")[0] == 0
+    said, went, waved = table("acts")
+    assert (said["by"], said["kind"], said["name"], said["number"]) == (
+        "wizard",
+        "say",
+        "Hello",
+        "2",
+    )
+    assert (said["time_s"], said["cue"], said["delay_s"]) == ("0.1", "asks", "0.4")
+    assert [row["undone"] for row in (said, went, waved)] == ["1", "", "0"]
+    assert (went["by"], went["name"], went["number"], went["cue"]) == (
+        "program",
+        "10, -5 cm",
+        "",
+        "",
+    )
+    assert (waved["name"], waved["weight"], waved["delay_s"]) == ("wave", "0.5", "")
