@@ -7,8 +7,7 @@ import numpy as np
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import distinct_names
-from cubeling.app.running.asked_scenario import load_cast
-from cubeling.app.running.opened_session import scenario_of
+from cubeling.app.running.asked_scenario import load_cast, scenario_of
 from cubeling.app.session import SessionFile
 from cubeling.characters import Character, Pose, PosedCharacter
 from cubeling.characters.formats.mocap.bvh_writing import save_bvh
