@@ -61,7 +61,7 @@ class LiveScript(Blank):
     """Black pictures that come in real time, as from a camera."""
 
     live = True
-    duration = None
+    duration: float | None = None  # type: ignore[assignment]
 
     def __iter__(self) -> Iterator[Frame]:
         began = time.monotonic()
@@ -120,7 +120,7 @@ class Typist(NullScreen):
     def _kind(self) -> str:
         return "cold" if self._number % 2 else "warm"
 
-    def show(self, step, robot):  # type: ignore[no-untyped-def]
+    def show(self, step, robot):
         now, device = time.monotonic(), self.loudspeaker
         if self._entered is not None and device is not None:
             heard = device.began is not None and device.began > self._entered
@@ -162,7 +162,7 @@ def main() -> int:
         pose, still = script.truth(0), np.zeros(6)
         return CubeState(True, pose, still, VARIANCE, "markers", (), 0.1, frame.timestamp)
 
-    def open_screen(size, folder, closing):  # type: ignore[no-untyped-def]
+    def open_screen(size, folder, closing):
         if not wanted.draw:
             return screen, None
         from cubeling.characters.rendering import create_context

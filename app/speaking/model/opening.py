@@ -1,14 +1,14 @@
 """Opening what asks a language model in a session."""
 
-from cubeling.app.pipeline.scenario import ConversingScenario, Scenario
+from cubeling.app.pipeline.scenario import ConversingScenario
 from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.model.answerer import Answerer
 
 
-def open_answerer(options: SessionOptions, scenario: Scenario | None, *, waits: bool) -> Answerer:
+def open_answerer(options: SessionOptions, scenario: object, *, waits: bool) -> Answerer:
     """Return what asks the model that the user has named, if a scenario talks; else it asks nobody.
 
-    The caller closes it. A replay, in which the answers are recorded, has no `scenario` here.
+    The caller closes it. A replay, in which the answers are recorded, has None as its scenario here.
 
     Raises
     ------

@@ -7,6 +7,7 @@ import pytest
 
 from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.scenario import Inputs, ModelAnswer
+from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions
@@ -29,7 +30,8 @@ class Player(NullScreen):
     """Types at some times, and keeps the steps and what it is told."""
 
     def __init__(self) -> None:
-        self.steps, self.told = [], []
+        self.steps: list[Step] = []
+        self.told: list[str] = []
         self._said = sorted(SAID.items())
 
     def show(self, step, robot):

@@ -2,18 +2,20 @@
 
 import sys
 import threading
+from typing import cast
 
 import numpy as np
 import pytest
 
 from cubeling.app.pipeline.scenario import Inputs
-from cubeling.app.scenarios import find_scenario
+from cubeling.app.scenarios.talk import Talk
 from cubeling.app.sound import NoSoundError
 from cubeling.app.speaking.listener import MAX_LISTEN_S, NOTHING_HEARD, PushToTalk
 from cubeling.app.speaking.microphone import MICROPHONE_HZ, SILENT_S
 from cubeling.characters import speech
+from cubeling.characters.speech import SpeechRecognizer
 
-SCRIPT = find_scenario("talk").script
+SCRIPT = Talk.script
 
 
 class FakeMicrophone:
@@ -123,7 +125,7 @@ def test_who_speaks_again_before_the_words_are_known_is_told():
             return "hello"
 
     listener = PushToTalk(FakeMicrophone)
-    listener._known = SCRIPT, "en", Slow()
+    listener._known = SCRIPT, "en", cast(SpeechRecognizer, Slow())
     listener.begin(SCRIPT, "en")
     listener.end()
     listener.begin(SCRIPT, "en")

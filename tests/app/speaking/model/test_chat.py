@@ -7,7 +7,7 @@ from hypothesis import given, strategies as st
 
 from cubeling.affect import Emotion
 from cubeling.app.errors import AppError
-from cubeling.app.scenarios import find_scenario
+from cubeling.app.scenarios.talk import Talk
 from cubeling.app.speaking.model.chat import KEY_VARIABLE, ChatModel
 from cubeling.app.speaking.model.protocol import ModelError
 from cubeling.app.speaking.model.tagged_reply import tagged_reply
@@ -20,7 +20,7 @@ TIMEOUT_S = 0.4
 
 
 def model_at(url, **settings):
-    return ChatModel(url, "tiny", find_scenario("talk").script, ("nod",), **settings)
+    return ChatModel(url, "tiny", Talk.script, ("nod",), **settings)
 
 
 def test_a_reply_keeps_its_tags_and_what_was_said_is_sent_along():
@@ -44,9 +44,9 @@ def test_the_key_comes_from_the_environment_and_is_in_no_message(monkeypatch):
     assert server.keys == ["Bearer s3cret"]
     assert "s3cret" not in str(caught.value)
     monkeypatch.setenv(KEY_VARIABLE, "s3cret\nX-Evil: 1")
-    with pytest.raises(AppError) as caught:
+    with pytest.raises(AppError) as refused:
         model_at("http://127.0.0.1:1/v1")
-    assert "s3cret" not in str(caught.value)
+    assert "s3cret" not in str(refused.value)
 
 
 @pytest.mark.parametrize(
