@@ -61,7 +61,7 @@ class LiveScript(Blank):
     """Black pictures that come in real time, as from a camera."""
 
     live = True
-    duration: float | None = None  # type: ignore[assignment]
+    duration: float | None = None
 
     def __iter__(self) -> Iterator[Frame]:
         began = time.monotonic()

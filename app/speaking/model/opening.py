@@ -8,7 +8,7 @@ from cubeling.app.speaking.model.answerer import Answerer
 def open_answerer(options: SessionOptions, scenario: object, *, waits: bool) -> Answerer:
     """Return what asks the model that the user has named, if a scenario talks; else it asks nobody.
 
-    The caller closes it. A replay, in which the answers are recorded, has None as its scenario here.
+    The caller closes it. A replay has the answers: there the scenario is None.
 
     Raises
     ------
