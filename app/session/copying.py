@@ -1,9 +1,10 @@
 """Copying the messages of a session to another file: byte for byte, or changed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
+from google.protobuf.message import Message
 from mcap.reader import SeekingReader
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
@@ -28,6 +29,9 @@ INPUT_TOPICS = (IMAGE_TOPIC, "/camera/calibration", INPUTS_TOPIC, LINE_TOPIC, "/
 Change = Callable[[str, float, bytes], bytes | None]
 """Takes a message's topic, its time [s] and its bytes; returns those to write, or None to drop."""
 
+Added = Callable[[float], Iterable[tuple[str, RecordedInputs | Message]]]
+"""Takes the time of a picture [s]; returns topics and messages that are added at that time."""
+
 
 def keep_inputs(session: Path, path: Path) -> None:
     """Copy what came in of a session: a replay computes the rest from it.
@@ -36,8 +40,12 @@ def keep_inputs(session: Path, path: Path) -> None:
     the inputs.
     """
     with SessionFile(session) as recorded:
-        added = {} if recorded.has(INPUTS_TOPIC) else recorded.inputs
-    copy_session(session, path, lambda topic, _, data: data if _came_in(topic) else None, added)
+        older = {} if recorded.has(INPUTS_TOPIC) else recorded.inputs
+
+    def add(time: float) -> Iterable[tuple[str, RecordedInputs]]:
+        return ((INPUTS_TOPIC, older[time]),) if time in older else ()
+
+    copy_session(session, path, lambda topic, _, data: data if _came_in(topic) else None, add)
 
 
 def _came_in(topic: str) -> bool:
@@ -49,7 +57,7 @@ def copy_session(
     session: Path,
     path: Path,
     change: Change,
-    added: Mapping[float, RecordedInputs] | None = None,
+    add: Added = lambda time: (),
     *,
     pictures: type[Any] | None = None,
 ) -> None:
@@ -63,12 +71,11 @@ def copy_session(
         The .mcap file to write; it is whole or not there.
     change
         What becomes of each message.
-    added
-        Inputs to add, by the time of their frame [s].
+    add
+        What is added to each picture.
     pictures
         The Protobuf message that `change` makes of pictures; None for that of the session.
     """
-    added = added or {}
     with (
         open_session_file(session) as source,
         whole_file(path, AppError) as partial,
@@ -96,12 +103,17 @@ def copy_session(
                     channel.topic, channel.message_encoding, schema_id
                 )
             writer.add_message(ids[channel.topic], message.log_time, data, message.publish_time)
-            if channel.topic == IMAGE_TOPIC and time in added:
-                if INPUTS_TOPIC not in ids:
-                    name, text = json_schema(INPUTS_TOPIC)
-                    ids[INPUTS_TOPIC] = writer.register_channel(
-                        INPUTS_TOPIC, "json", writer.register_schema(name, "jsonschema", text)
-                    )
-                document = encode(added[time])
-                writer.add_message(ids[INPUTS_TOPIC], message.log_time, document, message.log_time)
+            for topic, more in add(time) if channel.topic == IMAGE_TOPIC else ():
+                if topic not in ids:
+                    ids[topic] = _register(writer, topic, more)
+                document = more.SerializeToString() if isinstance(more, Message) else encode(more)
+                writer.add_message(ids[topic], message.log_time, document, message.log_time)
         writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
+
+
+def _register(writer: Writer, topic: str, message: RecordedInputs | Message) -> int:
+    """Make the channel of an added message, and return its number."""
+    if isinstance(message, Message):
+        return writer.register_channel(topic, "protobuf", register_schema(writer, type(message)))
+    name, text = json_schema(topic)
+    return writer.register_channel(topic, "json", writer.register_schema(name, "jsonschema", text))

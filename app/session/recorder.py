@@ -80,6 +80,22 @@ def json_schema(topic: str) -> tuple[str, bytes]:
     return OTHER_SCHEMAS[topic] if kind is None else (f"cubeling.{kind.__name__}", schema(kind))
 
 
+def calibration_message(intrinsics: Intrinsics, timestamp: float) -> CameraCalibration:
+    """Return a camera's calibration as Foxglove reads it, at a time [s]."""
+    message = CameraCalibration(
+        frame_id="camera",
+        width=intrinsics.size[0],
+        height=intrinsics.size[1],
+        distortion_model="plumb_bob",
+        D=intrinsics.distortion.ravel().tolist(),
+        K=intrinsics.matrix.ravel().tolist(),
+        R=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        P=[float(v) for row in intrinsics.matrix for v in (*row, 0.0)],
+    )
+    message.timestamp.FromNanoseconds(nanoseconds_of(timestamp))
+    return message
+
+
 class Recorder(Closeable):
     """Records one session to one .mcap file.
 
@@ -137,16 +153,7 @@ class Recorder(Closeable):
         if intrinsics.focal_deviation is not None:
             values = {FOCAL_DEVIATION: repr(intrinsics.focal_deviation)}
             self._submit(partial(self._writer.add_metadata, LENS_RECORD, values))
-        message = CameraCalibration(
-            frame_id="camera",
-            width=intrinsics.size[0],
-            height=intrinsics.size[1],
-            distortion_model="plumb_bob",
-            D=intrinsics.distortion.ravel().tolist(),
-            K=intrinsics.matrix.ravel().tolist(),
-            R=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-            P=[float(v) for row in intrinsics.matrix for v in (*row, 0.0)],
-        )
+        message = calibration_message(intrinsics, timestamp)
         self._protobuf("/camera/calibration", message, timestamp)
 
     def clock(self, zero: datetime) -> None:

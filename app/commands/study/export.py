@@ -30,6 +30,10 @@ def export(
     bvh: Annotated[
         bool, typer.Option("--bvh", help="Write the motion of each character as a .bvh file too.")
     ] = False,
+    foxglove: Annotated[
+        bool,
+        typer.Option("--foxglove", help="Write each session as Foxglove shows it, with a layout."),
+    ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Overwrite the files of an earlier export.")
     ] = False,
@@ -48,8 +52,11 @@ def export(
     from cubeling.app.workshop.exporting.writing import EXPORT_FILES
 
     check_output_folder(output, EXPORT_FILES, "tables", overwrite=overwrite)
-    if bvh and not overwrite and next(output.glob("*.bvh"), None):
-        raise AppError(f"'{output}' holds motions already: choose another one or add --overwrite")
+    for wanted, pattern in ((bvh, "*.bvh"), (foxglove, "*.mcap")):
+        if wanted and not overwrite and next(output.glob(pattern), None):
+            raise AppError(
+                f"'{output}' holds {pattern} files already: choose another one or add --overwrite"
+            )
     people = labels(participant, len(sessions), "--participant")
     conditions = labels(condition, len(sessions), "--condition")
     names = [path.stem for path in sessions]
@@ -77,6 +84,17 @@ def export(
                     motions.update(
                         write_motions(each.complete or each.path, output, each.path.stem)
                     )
+            if foxglove:
+                from cubeling.app.workshop.exporting.foxglove import (
+                    LAYOUT_FILE,
+                    write_foxglove,
+                    write_layout,
+                )
+
+                for each in complete:
+                    shown = output / f"{each.path.stem}-foxglove.mcap"
+                    write_foxglove(each.complete or each.path, shown)
+                write_layout(output / LAYOUT_FILE)
     console = Console(highlight=False, soft_wrap=True)
     for name, count in rows.items():
         console.print(f"{name:11} {count:8} {'row' if count == 1 else 'rows'}")

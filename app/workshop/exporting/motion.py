@@ -1,6 +1,6 @@
 """What the characters of a session did, as motion capture (.bvh)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -37,18 +37,22 @@ def write_motions(path: Path, folder: Path, name: str) -> dict[str, int]:
     """
     written = {}
     with SessionFile(path) as session:
-        options = session.info.options
-        cast = load_cast(options, scenario_of(options, options.scenario))
-        for number, (own, character) in enumerate(
-            zip(distinct_names(each.name for each in cast), cast, strict=True)
-        ):
-            topic = f"/cast/{own}/pose" if number else "/character/pose"
+        for topic, (own, character) in cast_of(session):
             found = [each for _, _, each in session.decode_messages({topic: PosedCharacter})]
             file = f"{name}-{own}.bvh"
             clip, placed = _clip(f"{name}: {own}", character, found)
             save_bvh(clip, character.skeleton, character.anatomy, folder / file, placed)
             written[file] = len(clip)
     return written
+
+
+def cast_of(session: SessionFile) -> Iterator[tuple[str, tuple[str, Character]]]:
+    """Yield the channel of the poses, the name and the body of each character."""
+    options = session.info.options
+    cast = load_cast(options, scenario_of(options, options.scenario))
+    for number, name in enumerate(distinct_names(each.name for each in cast)):
+        topic = f"/cast/{name}/pose" if number else "/character/pose"
+        yield topic, (name, cast[number])
 
 
 def _clip(name: str, character: Character, posed: Sequence[PosedCharacter]) -> tuple[Clip, Array]:
