@@ -194,7 +194,7 @@ def _around(points: Array, axis: Array, apart: float) -> Array:
 
 def _radii(points: NDArray[np.floating[Any]], axis: Array) -> Array:
     """Return how far points (n, 3) are from the upright axis of the head, (n,) [m]."""
-    return np.hypot(points[:, 0] - axis[0], points[:, 2] - axis[2])
+    return np.asarray(np.hypot(points[:, 0] - axis[0], points[:, 2] - axis[2]), np.float64)
 
 
 def _texel_places(

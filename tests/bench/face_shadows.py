@@ -188,6 +188,7 @@ def measure(
     found = (light_of[SHADOWS.name] / np.maximum(light_of[NONE.name], MIN_LIGHT))[seen]
     table_from_camera = np.linalg.inv(np.asarray(view.camera_from_table, float))
     points = position @ table_from_camera[:3, :3].T + table_from_camera[:3, 3]
+    assert isinstance(actor.character, Character)
     posed_mesh = posed(actor.character, actor.posed.pose, actor.posed.table_from_character)
     tracer = RayTracer(posed_mesh)
     ways = (points - table_from_camera[:3, 3]).astype("f4")
