@@ -17,12 +17,9 @@ void main() {
     vec3 seen = (lamp_from_point * vec4(point.xyz, 1.0)).xyz;
     vec3 normal = mat3(lamp_from_point) * normal_of_number(point.w);
     float facing = dot(normal, seen), cosine = abs(facing) / length(seen);
-    // What looks away from the lamp is shadowed by itself: only others count, whose shadows begin the further behind
-    // them the steeper it is.
-    bool away = facing >= 0.0;
-    vec3 plane = away ? vec3(0.0) : normal / facing;
-    float begin = away ? shadow_range.x / max(cosine, 0.05) : shadow_range.x;
+    // What looks away from the lamp is shadowed by itself: only others count.
+    vec3 plane = facing < 0.0 ? normal / facing : vec3(0.0);
     float width;
-    visible.rgb = key_left(Receiver(seen.xy / seen.z, seen.z - begin, plane, cosine), here, width);
+    visible.rgb = key_left(Receiver(seen.xy / seen.z, seen.z - shadow_range.x, plane, cosine), here, width);
     visible.a = min(width / tile_m, 1.0);
 }
