@@ -121,6 +121,15 @@ def dated_file(folder: Path, name: str, suffix: str, when: datetime) -> Path:
     return next(path for each in names if not (path := folder / f"{each}{suffix}").exists())
 
 
+def part_path(path: Path, number: int) -> Path:
+    """Return the file of a part of a recording, by its number from 1.
+
+    >>> part_path(Path("today.mcap"), 2).name
+    'today-002.mcap'
+    """
+    return path if number == 1 else path.with_stem(f"{path.stem}-{number:03}")
+
+
 def short_path(path: Path) -> str:
     """Return a path as a shell takes it, with ~ for the home folder."""
     text = str(path)

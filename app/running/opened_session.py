@@ -365,7 +365,7 @@ class OpenedSession:
         if self.recording is not None:
             self.recording.close()
             self.recording_problem = self.recording.problem or self.recording_problem
-            self.recorded.append(self.recording.path)
+            self.recorded += self.recording.paths
             self.recording = None
             self.playground.fixed = self.options.keeps_scenario or not self.options.windowed
 

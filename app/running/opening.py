@@ -164,6 +164,8 @@ def open_session(
                 prepare_gestures(each)
         if replayed is None and options.source.endswith(".mcap"):
             replayed = closing.enter_context(SessionFile(Path(options.source)))
+        if replayed is not None and options.stage == "camera" and is_replay(replayed, options):
+            replayed.check_begins()
         replay_inputs = None
         if options.stage != "camera" and replayed is not None:
             replay_inputs = replayed.replay_inputs(options.stage)

@@ -26,6 +26,9 @@ SESSION_RECORD, FORMAT_KEY = "cubeling", "format"
 SESSION_FORMAT = 1
 """The version of the format that is written: all that changed it stands in `_upgrade_content`."""
 
+PART_KEY, FIRST_PART_KEY = "part", "first_part"
+"""Keys of a part of a recording but the first: its number, and the file that it began with."""
+
 PLAYED_RECORD = "cubeling played"
 """Name of a session's metadata that say what is played, resolved."""
 

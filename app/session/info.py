@@ -30,5 +30,8 @@ class SessionInfo:
     has_video: bool
     """Whether its pictures are those of the camera; else it is replayed from where the cube was."""
 
+    first_part: str
+    """Name of the file that a recording in parts began with; "" for the beginning of one."""
+
     clock_zero: str
     """When the timestamps of a live camera were 0, in UTC by ISO 8601; "" for other sources."""

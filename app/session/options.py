@@ -120,6 +120,12 @@ class SessionOptions:
     codec: str = "auto"
     """How a recording stores the camera's pictures: one of `CODECS`."""
 
+    part_s: float | None = None
+    """Duration of a part of a recording, then it goes on in another file [s]; None for any."""
+
+    part_bytes: int | None = None
+    """Size of such a part; None for any."""
+
     video_codec: str = "auto"
     """What encodes the pictures of `output`, as `app.ui.output_formats.ENCODERS` names it; "auto"
     for the usual one of its kind of video."""

@@ -26,6 +26,7 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.pipeline.table.stage_sounds import SoundClip
 from cubeling.app.session.encoding import (
+    APPEARANCE_TOPIC,
     CLOCK_RECORD,
     CLOCK_ZERO,
     FORMAT_KEY,
@@ -148,6 +149,11 @@ class Recorder(Closeable):
             thread.start()
         self._closed = False
 
+    @property
+    def written_bytes(self) -> int:
+        """Size of the file so far."""
+        return 0 if self._closed else os.fstat(self._file.fileno()).st_size
+
     def camera(self, intrinsics: Intrinsics, timestamp: float) -> None:
         """Record the camera's calibration."""
         if intrinsics.focal_deviation is not None:
@@ -173,7 +179,10 @@ class Recorder(Closeable):
             self._sound(sound_topic(name), clip, now)
         if came_in is not None:
             self._json(INPUTS_TOPIC, partial(encode, came_in), now)
-        for topic, message in step.messages().items():
+        news = step.messages()
+        if self._steps == 1 and step.appearance is not None:
+            news[APPEARANCE_TOPIC] = step.appearance  # what is not news is in no file yet
+        for topic, message in news.items():
             if self._blind and isinstance(message, Appearance):
                 message = replace(message, room=None)  # it is a picture
             self._json(topic, partial(encode, message), now)

@@ -17,6 +17,7 @@ from cubeling.app.session.encoding import (
     APPEARANCE_TOPIC,
     CLOCK_RECORD,
     CLOCK_ZERO,
+    FIRST_PART_KEY,
     IMAGE_TOPIC,
     INPUTS_TOPIC,
     LINE_TOPIC,
@@ -85,7 +86,16 @@ class SessionFile(MessageFile):
         options = replace(options, **names)
         played = self.metadata.get(PLAYED_RECORD, {})
         has_video = about.get("video", "yes") != "no"
-        return SessionInfo(options, frames, seconds, played, labels, has_video, clock_zero)
+        first = about.get(FIRST_PART_KEY, "")
+        return SessionInfo(options, frames, seconds, played, labels, has_video, first, clock_zero)
+
+    def check_begins(self) -> None:
+        """Refuse to play a later part of a recording from its pictures on; raises AppError."""
+        if first := self.info.first_part:
+            raise AppError(
+                f"'{self.path}' goes on from '{first}', and does not hold what was before: "
+                f"replay '{first}', or this part as it was recorded with --from pose"
+            )
 
     @cached_property
     def labels(self) -> SessionLabels:

@@ -43,11 +43,14 @@ from cubeling.app.commands.play.play_options import (
     RecordOption,
     RobotSettingsOption,
     RobotsOption,
+    RotateMbOption,
+    RotateMinutesOption,
     ScenarioArgument,
     SoundsOption,
     SourceOption,
     VideoOption,
     codecs_of,
+    parts_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
@@ -81,6 +84,8 @@ def play(
     patience: PatienceOption = 30.0,
     robots: RobotsOption = None,
     record: RecordOption = None,
+    rotate_minutes: RotateMinutesOption = None,
+    rotate_mb: RotateMbOption = None,
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     speed_map: Annotated[
@@ -169,6 +174,7 @@ def play(
         robot_names=robot_names,
         robot_settings=robot_settings,
         record=record,
+        **parts_of(rotate_minutes, rotate_mb),
         codec=record_codec if video else NO_VIDEO,
         video_codec=video_codec,
         output=output,

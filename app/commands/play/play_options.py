@@ -3,8 +3,9 @@
 Those without a group matter most, and come first in a help.
 """
 
+import math
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -176,6 +177,20 @@ RobotSettingsOption = Annotated[
     ),
 ]
 RecordOption = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
+RotateMinutesOption = Annotated[
+    float | None,
+    typer.Option(
+        help="Let a recording go on in another file after so many minutes: today-002.mcap …",
+        rich_help_panel=FILES_GROUP,
+    ),
+]
+RotateMbOption = Annotated[
+    float | None,
+    typer.Option(
+        help="The same when a file has so many megabytes.",
+        rich_help_panel=FILES_GROUP,
+    ),
+]
 CodecOption = Annotated[
     str,
     typer.Option(
@@ -238,6 +253,17 @@ SoundsOption = Annotated[
         rich_help_panel=FILES_GROUP,
     ),
 ]
+
+
+def parts_of(minutes: float | None, megabytes: float | None) -> dict[str, Any]:
+    """Return `part_s` and `part_bytes` of the options; raises AppError if they are not positive."""
+    for option, value in (("--rotate-minutes", minutes), ("--rotate-mb", megabytes)):
+        if value is not None and not 0.0 < value < math.inf:
+            raise AppError(f"{option} is greater than 0, not {value:g}")
+    return {
+        "part_s": None if minutes is None else 60.0 * minutes,
+        "part_bytes": None if megabytes is None else math.ceil(1e6 * megabytes),
+    }
 
 
 def codecs_of(codec: str, record: Path | None, output: Path | None) -> tuple[str, str]:

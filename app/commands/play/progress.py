@@ -152,6 +152,8 @@ def report_recording(path: Path, console: Console) -> None:
         console.print(f"[bold]{name}[/] was cut off: [cyan]{replay} --salvage[/]", soft_wrap=True)
         return
     size = path.stat().st_size / 1e6
+    if info.first_part:
+        replay += " --from pose"
     console.print(
         f"Recorded to [bold]{name}[/]: {info.duration:.1f} s, {quantity(info.frames, 'frame')}, "
         f"{size:.1f} MB. "

@@ -168,6 +168,8 @@ def replay(
         (robot, second_robot), robot_names = robots_of(
             robots or (), recorded.players, recorded.robot_names
         )
+        if stage == "camera" or check:
+            file.check_begins()
         if not info.has_video:
             if check:
                 raise AppError(f"'{session}' was recorded without video: nothing can be checked")

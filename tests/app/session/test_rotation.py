@@ -1,0 +1,125 @@
+"""Recordings in parts: each is whole, together they are the session, and only the first replays."""
+
+import itertools
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cubeling.app.output_path import part_path
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.running.recording.recording import SessionRecording
+from cubeling.app.session import SessionFile, SessionOptions, messages, session_info
+from cubeling.app.session.encoding import IMAGE_TOPIC
+from cubeling.tracking import Intrinsics, open_source
+from tests.app.conftest import SHORT_FRAMES
+
+MINUTES = 11.5 / 30.0 / 60.0  # twelve frames
+PARTS = -(-SHORT_FRAMES // 12)
+
+
+def parts_of(path):
+    found = [part_path(path, number) for number in range(1, 41)]
+    return [each for each in found if each.exists()]
+
+
+def record(cubeling, session, path, *options):
+    arguments = ["play", "companion", "--source", session, "--no-pictures", "--record", path]
+    code, out, err = cubeling(*arguments, *options)
+    assert code == 0, err
+    return out
+
+
+@pytest.fixture
+def rotated(cubeling, short_session):
+    out = record(
+        cubeling, short_session, "all.mcap", "--codec", "jpeg", "--rotate-minutes", MINUTES
+    )
+    assert "cubeling replay all-002.mcap --from pose" in out
+    return parts_of(Path("all.mcap"))
+
+
+@pytest.mark.slow(reason="a session is recorded twice")
+def test_the_parts_together_are_what_one_file_would_be(cubeling, short_session, rotated):
+    assert len(rotated) == PARTS
+    record(cubeling, short_session, "one.mcap", "--codec", "jpeg", "--rotate-mb", 1000)
+    with SessionFile(Path("one.mcap")) as session:
+        topics = (IMAGE_TOPIC, "/inputs", "/events", *session.channels)
+    whole = list(messages(Path("one.mcap"), *topics))
+    joined = list(itertools.chain.from_iterable(messages(path, *topics) for path in rotated))
+    assert joined == whole
+    for path in rotated:
+        with SessionFile(path) as session:  # its index and every channel are there
+            assert session.has_channels
+            assert session.info.frames <= 12
+    assert sum(session_info(path).frames for path in rotated) == SHORT_FRAMES
+
+
+@pytest.mark.slow(reason="a session is recorded and replayed")
+def test_the_first_part_replays_exactly_and_the_others_name_it(cubeling, rotated):
+    assert cubeling("replay", "all.mcap", "--check")[0] == 0
+    for arguments in (("--no-pictures",), ("--check",)):
+        code, _, err = cubeling("replay", "all-002.mcap", *arguments)
+        assert (code, err.count("\n")) == (2, 1)
+        assert "goes on from 'all.mcap'" in err
+    shown = ["all-002.mcap", "--from", "pose", "--no-pictures"]
+    assert cubeling("replay", *shown)[0] == 0
+    assert cubeling("export", "all-002.mcap", "-o", "out")[0] == 0
+
+
+def test_h264_parts_can_be_decoded_alone_and_are_cut_by_size(cubeling, short_session):
+    size = 0.05
+    record(cubeling, short_session, "s.mcap", "--codec", "h264", "--rotate-mb", size)
+    parts = parts_of(Path("s.mcap"))
+    assert len(parts) > 1
+    count = 0
+    for path in parts:
+        with open_source(str(path)) as source:
+            count += sum(1 for _ in source)
+    assert count == SHORT_FRAMES
+
+
+def test_a_kill_leaves_all_complete_parts_whole(short_session, tmp_path):
+    copied = tmp_path / "killed"
+    copied.mkdir()
+    with open_source(str(short_session)) as source:
+        options = SessionOptions(
+            scenario="companion",
+            source=str(short_session),
+            record=tmp_path / "k.mcap",
+            codec="jpeg",
+            part_s=0.38,
+        )
+        playground = Playground("companion", source.intrinsics or Intrinsics.guess(source.size))
+        recording = SessionRecording(options.record, options, playground, source, (), language="")
+        for frame in itertools.islice(source, 30):
+            recording.write(playground.step(recording.encode(frame)), Inputs())
+        recording.flush()
+        recording._wait_for_ended()
+        for path in recording.paths:  # as the disk is when the program is killed now
+            shutil.copy(path, copied)
+        recording.close()
+        playground.close()
+    parts = parts_of(copied / "k.mcap")
+    assert len(parts) == 3
+    assert [session_info(path).frames for path in parts[:-1]] == [12, 12]
+    assert session_info(parts[-1], salvage=True).frames == 6
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (("--rotate-minutes", "0"), "--rotate-minutes is greater than 0"),
+        (("--rotate-mb", "nan"), "--rotate-mb is greater than 0"),
+        (("--rotate-mb", "1"), "old-002.mcap' exists already"),
+    ],
+)
+def test_bad_input_is_one_line(cubeling, short_session, options, says):
+    Path("old-002.mcap").touch()
+    code, _, err = cubeling(
+        "play", "companion", "--source", short_session, "--record", "old.mcap", *options
+    )
+    assert (code, err.count("\n")) == (2, 1)
+    assert says in err
+    assert not Path("old.mcap").exists()
