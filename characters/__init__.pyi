@@ -24,7 +24,7 @@ from cubeling.characters.control.layers import (
     DEFAULT_LAYERS as DEFAULT_LAYERS,
     layers_of as layers_of,
 )
-from cubeling.characters.control.layers.gestures import (
+from cubeling.characters.control.layers.gestures.layer import (
     GestureLayer as GestureLayer,
     prepare_gestures as prepare_gestures,
 )

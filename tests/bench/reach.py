@@ -55,7 +55,7 @@ from cubeling.characters.behaviour.intents import BehaviourIntent, ReachIntent, 
 from cubeling.characters.control.layers import FOOT_LAYERS, LIVELINESS_LAYERS
 from cubeling.characters.control.layers.gaze import GazeLayer
 from cubeling.characters.control.layers.layer import FrameContext
-from cubeling.characters.control.layers.reach import ReachLayer
+from cubeling.characters.control.layers.reach.layer import ReachLayer
 from cubeling.characters.ik.reaching import HandTarget
 from cubeling.characters.ik.reaching.placed_tree import Settled
 from cubeling.characters.ik.reaching.tree import (

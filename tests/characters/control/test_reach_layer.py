@@ -14,15 +14,15 @@ from cubeling.characters.behaviour.intents import BehaviourIntent, ReachIntent, 
 from cubeling.characters.control.controllers import default_height
 from cubeling.characters.control.layers import FOOT_LAYERS
 from cubeling.characters.control.layers.gaze import GazeLayer
+from cubeling.characters.control.layers.gestures.sitting_up import SittingUpLayer
 from cubeling.characters.control.layers.posture import PostureLayer
-from cubeling.characters.control.layers.reach import (
+from cubeling.characters.control.layers.reach.layer import (
     CLEARANCE,
     LEAVE_S,
     ReachingHand,
     ReachLayer,
     surface_of,
 )
-from cubeling.characters.control.layers.sitting_up import SittingUpLayer
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Array, Pose
 from tests.examples import some

@@ -12,9 +12,9 @@ from cubeling.characters.behaviour.gestures.planning import GesturePlanning, Ges
 from cubeling.characters.behaviour.gestures.timing import PhaseTimes, natural_times
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, ReachIntent, Times
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, Place, SymbolicGesture
-from cubeling.characters.control.layers.gesture_playback import GesturePlayback
-from cubeling.characters.control.layers.gestures import SHOWN_AT_ONCE, GestureLayer
-from cubeling.characters.control.layers.sitting_up import SittingUpLayer
+from cubeling.characters.control.layers.gestures.layer import SHOWN_AT_ONCE, GestureLayer
+from cubeling.characters.control.layers.gestures.playback import GesturePlayback
+from cubeling.characters.control.layers.gestures.sitting_up import SittingUpLayer
 from tests.examples import some
 
 RATE = 30.0

@@ -3,18 +3,18 @@
 import math
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.characters.behaviour.intents import ReachIntent, Times
-from cubeling.characters.behaviour.realization.planned_values import PlannedValues
+from cubeling.characters.behaviour.intents import ReachIntent
 from cubeling.characters.body.capsules import fitted_capsules
 from cubeling.characters.control.layers.behaviour import gaze_of
 from cubeling.characters.control.layers.layer import FrameContext
+from cubeling.characters.control.layers.reach.hands import JOIN_S, NearestHand, ReachingHand
 from cubeling.characters.errors import CharacterError
-from cubeling.characters.ik.reaching import HandTarget, ReachStyle, UpperBody
+from cubeling.characters.ik.reaching import HandTarget, ReachStyle
 from cubeling.characters.ik.reaching.arms import scale_vector
 from cubeling.characters.ik.reaching.placed_tree import Settled
 from cubeling.characters.ik.reaching.surface import BodySurface
@@ -22,26 +22,11 @@ from cubeling.characters.ik.reaching.tree import FIRST_STEPS, STEP_S
 from cubeling.characters.ik.reaching.whole_body import PlacedBody
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.standing import idle_clips
-from cubeling.characters.motion.curves import ease
 from cubeling.characters.motion.inertialization import OffsetDecay
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.skeleton.scalar_quaternions import Vector, add, length, subtract
-from cubeling.characters.skeleton.way_round import WayRound
 from cubeling.characters.smoothing import low_pass
-
-LEAVE_S = 0.9
-"""How long a hand takes to go that was at its place and is not asked for any more [s]: a little
-longer than it usually comes and sits down, since the body may go elsewhere meanwhile."""
-
-BLEND_S = 0.3
-"""In which time its weight goes over from one plan to another [s]."""
-
-JOIN_S = 0.3
-"""How long it takes at least to join in late, or to go to another place than before [s]."""
-
-RELAX_S = 0.6
-"""How long it takes to go if its end is not known [s]."""
 
 MAX_TARGET_SPEED = 3.0
 """Speed of a place that a hand follows, in body heights a second: what is faster is a jump."""
@@ -52,9 +37,6 @@ MAX_ARM_SPEED_RAD = 25.0
 CLEARANCE = 0.012
 """Distance of a palm from the body's surface ÷ the body's height."""
 
-HAND_CHANGE_MARGIN = 0.12
-"""By how much the other hand must be nearer to take over, in arm lengths."""
-
 HAND_OFFSET = 0.12
 """Distance of each of two hands from the middle of what both reach for, in arm lengths."""
 
@@ -63,117 +45,6 @@ STYLE_LAG_S = 0.15
 
 TRUNK = ("hips", "spine", "chest", "head")
 """Parts of the body that hands stay out of."""
-
-
-@dataclass
-class ReachingHand:
-    """One hand of one character, from frame to frame."""
-
-    intent: ReachIntent | None = None
-    """What it does, or did last; None if it is free."""
-
-    place: Vector = (0.0, 0.0, 0.0)
-    """Where it is to be, in the character frame [m]."""
-
-    weight: float = 0.0
-    """How far it is there, 0…1."""
-
-    jumped: bool = False
-    """Whether it is now asked to be somewhere else than a frame before."""
-
-    _joined: tuple[float, float] = (0.0, 0.0)
-    _left: tuple[float, float] | None = None
-    way: WayRound = field(default_factory=WayRound)
-    """By which way its arm goes there."""
-
-    _weights: PlannedValues = field(default_factory=lambda: PlannedValues(1, BLEND_S))
-
-    def follow(self, intent: ReachIntent, place: Vector, now: float, step: float) -> None:
-        """Go on with an intent, or begin it; its place moves at most `step` [m] without a jump."""
-        old = self.intent
-        self.jumped = self.weight > 0.0 and (
-            old is None
-            or (old.key, old.kind) != (intent.key, intent.kind)
-            or length(subtract(place, self.place)) > step
-        )
-        if old is None or old.key != intent.key or self._left is not None:
-            self._joined, self._left = (now, self.weight), None
-        self.intent, self.place = intent, place
-
-    def leave(self, now: float) -> None:
-        """Let it fade, because nothing is asked of it."""
-        self.jumped = False
-        if self._left is None:
-            self._left = now, self.weight
-
-    def advance(self, now: float) -> None:
-        """Bring its weight to a time [s]; it changes smoothly when its times do."""
-        if self.intent is None:
-            return
-        times, left = self.intent.times, self._left
-        plan = (times, self._joined) if left is None else left
-        asked = self._weights.update(
-            plan, lambda time: np.array([self._wanted_weight(times, time)]), now
-        )
-        self.weight = min(max(float(asked[0]), 0.0), 1.0)
-        if left is not None and now >= left[0] + _leave_s(left[1]):
-            self.weight, self.intent, self._left = 0.0, None, None
-            self._weights = PlannedValues(1, BLEND_S)
-
-    def _wanted_weight(self, times: Times, now: float) -> float:
-        if self._left is not None:
-            since, weight = self._left
-            return weight * (1.0 - ease((now - since) / _leave_s(weight), "gonio"))
-        since, before = self._joined
-        begin, ready = max(times.start, since), times.ready
-        if since > times.start:  # it joins in late, or comes from another place
-            ready = max(ready, since + JOIN_S)
-        there = ease((now - begin) / (ready - begin), "gonio") if now < ready else 1.0
-        weight = before + (1.0 - before) * there
-        if times.relax is None or now <= times.relax:
-            return weight
-        end = times.relax + RELAX_S if times.end is None else times.end
-        going = (now - times.relax) / (end - times.relax) if now < end else 1.0
-        return weight * (1.0 - ease(going, "gonio"))
-
-
-def _leave_s(weight: float) -> float:
-    """Return how long a hand of a weight takes to go [s].
-
-    By the root of the way, so that it accelerates no more than over the whole of it: it may still
-    be on its way there, and then its weight must first stop growing.
-    """
-    return max(LEAVE_S * math.sqrt(weight), BLEND_S)
-
-
-@dataclass
-class NearestHand:
-    """Chooses a hand for each intent that leaves the choice, and keeps to it."""
-
-    body: UpperBody
-
-    shoulders: dict[str, Vector]
-    """Where they begin, in the character frame [m]."""
-
-    _chosen: dict[str, str] = field(default_factory=dict)
-
-    def choose(self, intent: ReachIntent, place: Vector, taken: Sequence[str]) -> str:
-        """Return the side of the hand; the nearer free one, with hysteresis."""
-
-        def cost(side: str) -> float:
-            arm = self.body.arms[side]
-            far = length(subtract(place, self.shoulders[side])) / (arm.upper + arm.fore)
-            kept = HAND_CHANGE_MARGIN if self._chosen.get(intent.key) == side else 0.0
-            return far - kept + (math.inf if side in taken and len(self.shoulders) > 1 else 0.0)
-
-        self._chosen[intent.key] = min(self.shoulders, key=cost)
-        return self._chosen[intent.key]
-
-    def forget(self, intents: Sequence[ReachIntent]) -> None:
-        """Forget all choices but those for some intents."""
-        if self._chosen:
-            keys = {intent.key for intent in intents}
-            self._chosen = {key: side for key, side in self._chosen.items() if key in keys}
 
 
 class ReachLayer:

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent, Hand
+from cubeling.characters.control.layers.gestures.sitting_up import STANDING_REST
 from cubeling.characters.control.layers.layer import FrameContext
-from cubeling.characters.control.layers.sitting_up import STANDING_REST
 from cubeling.characters.model.character import Character
 from cubeling.characters.skeleton.pose import Pose
 from cubeling.characters.smoothing import SpringValue
 
 if TYPE_CHECKING:
-    from cubeling.characters.control.layers.gesture_playback import GesturePlayback
+    from cubeling.characters.control.layers.gestures.playback import GesturePlayback
 
 FADE_S = 0.3
 """How long a gesture takes to join in late, or to go that others cover [s]."""
@@ -97,7 +97,7 @@ class GestureLayer:
     ) -> "GesturePlayback":
         # Most sessions have no gestures: what plans them is loaded with the first one.
         from cubeling.characters.behaviour.gestures.planning import GestureRealizer
-        from cubeling.characters.control.layers.gesture_playback import GesturePlayback
+        from cubeling.characters.control.layers.gestures.playback import GesturePlayback
 
         hand = intent.hand
         if hand == "nearest":
@@ -110,7 +110,7 @@ class GestureLayer:
 
 def prepare_gestures(character: Character) -> None:
     """Load what plans gestures and measure a body, so that its first gesture delays no frame."""
-    import cubeling.characters.control.layers.gesture_playback  # noqa: F401
+    import cubeling.characters.control.layers.gestures.playback  # noqa: F401
     from cubeling.characters.behaviour.gestures.planning import GestureRealizer
 
     GestureRealizer.of(character)

@@ -1,0 +1,1 @@
+"""Gestures: of a behaviour or a speech, on the upper body."""
