@@ -201,7 +201,7 @@ def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iter
     if character.lender is not None:
         none = "none of its motions stands" if clips else "it has no motions of its own"
         yield (
-            f"{none.capitalize()}: {'beside them' if clips else 'it'} plays those of the bundled "
+            f"{none.capitalize()}: {'beside them ' if clips else ''}it plays those of the bundled "
             f"{character.lender}, retargeted; --own-motions-only leaves them out."
         )
     elif not clips and _is_head(character):

@@ -14,13 +14,13 @@ FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 LIVELINESS = Registry[LayerFactory](
     {
         "speech": f"{_LAYERS}.speech:SpeechLayer",
-        "sitting_up": f"{_LAYERS}.sitting_up:SittingUpLayer",
+        "sitting_up": f"{_LAYERS}.gestures.sitting_up:SittingUpLayer",
         "fingers": f"{_LAYERS}.fingers:FingersLayer",
         "stance": f"{_LAYERS}.behaviour:StanceLayer",
-        "gestures": f"{_LAYERS}.gestures:GestureLayer",
+        "gestures": f"{_LAYERS}.gestures.layer:GestureLayer",
         "clips": f"{_LAYERS}.clips:ClipLayer",
         "posture": f"{_LAYERS}.posture:PostureLayer",
-        "reach": f"{_LAYERS}.reach:ReachLayer",
+        "reach": f"{_LAYERS}.reach.layer:ReachLayer",
         "gaze": f"{_LAYERS}.gaze:GazeLayer",
         "face_shift": f"{_LAYERS}.behaviour:FaceShiftLayer",
         "face": f"{_LAYERS}.face:FaceLayer",

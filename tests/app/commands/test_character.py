@@ -84,7 +84,7 @@ def test_long_names_of_clips_are_shown_whole(cubeling, monkeypatch):
     replace(human, clips={name: clip}).save(Path("named.glb"))
     code, out, _ = cubeling("character", "inspect", "named.glb")
     assert code == 0
-    table = out[out.index("Clips") : out.index("No problems")].splitlines()
+    table = out[out.index("Clips") : out.index("None of its motions")].splitlines()
     heading = next(line for line in table if "seconds" in line)
     assert "speed [m/s]" in " ".join(table)
     first_column = [line[: heading.index("seconds")].strip() for line in table]

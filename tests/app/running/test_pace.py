@@ -152,10 +152,10 @@ def test_a_player_who_started_over_in_a_frame_that_is_not_drawn_did_so_in_it(
     cleared = []
     decide = Cast.decide
 
-    def note(self, seen, told):
+    def note(self, seen, told, view):
         if told[0].clear:
             cleared.append(seen[0].controls.timestamp)
-        return decide(self, seen, told)
+        return decide(self, seen, told, view)
 
     monkeypatch.setattr(Cast, "decide", note)
     play_slowly()

@@ -1,4 +1,4 @@
-"""The page "Talk to it" names every condition and action."""
+"""The pages of talks and of shows name every condition, action and cue."""
 
 import re
 from pathlib import Path
@@ -7,17 +7,24 @@ from cubeling.app.scenarios.dialogue.vocabulary import TALK_VOCABULARY
 from cubeling.app.show.script import CUES, read_show
 from cubeling.characters.dialogue.reading import read_script
 
-PAGE = Path(__file__).parents[3] / "docs" / "talking.md"
+DOCS = Path(__file__).parents[3] / "docs"
+TALKING, SHOWS = ((DOCS / name).read_text() for name in ("talking.md", "shows.md"))
 
 
-def test_every_condition_and_action_is_on_the_page():
-    rows = [line for line in PAGE.read_text().splitlines() if line.startswith("| `")]
-    named = {name for row in rows for name in re.findall(r"`(\w+)`", row.split("|")[1])}
-    assert {*TALK_VOCABULARY.conditions, *TALK_VOCABULARY.actions, *CUES} <= named
+def named_in_tables(page):
+    rows = [line for line in page.splitlines() if line.startswith("| `")]
+    return {name for row in rows for name in re.findall(r"`(\w+)`", row.split("|")[1])}
 
 
-def test_the_script_and_the_play_on_the_page_can_be_read(tmp_path):
-    example, play = re.findall(r"```xml\n(.*?)```", PAGE.read_text(), re.DOTALL)
+def test_every_condition_action_and_cue_is_on_its_page():
+    assert {*TALK_VOCABULARY.conditions, *TALK_VOCABULARY.actions} <= named_in_tables(TALKING)
+    assert CUES.keys() <= named_in_tables(SHOWS)
+
+
+def test_the_script_and_the_play_on_the_pages_can_be_read(tmp_path):
+    example, play = (
+        re.search(r"```xml\n(.*?)```", page, re.DOTALL)[1] for page in (TALKING, SHOWS)
+    )
     path = tmp_path / "cats.xml"
     path.write_text(example)
     script = read_script(path, TALK_VOCABULARY)
