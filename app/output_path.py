@@ -1,5 +1,6 @@
 """Where files go: checked before a command does the work, and named for a key."""
 
+import glob
 import os
 import shlex
 from collections.abc import Iterable, Iterator
@@ -128,6 +129,11 @@ def part_path(path: Path, number: int) -> Path:
     'today-002.mcap'
     """
     return path if number == 1 else path.with_stem(f"{path.stem}-{number:03}")
+
+
+def later_parts(path: Path) -> list[Path]:
+    """Return the files in a recording's folder that are called as its parts but the first."""
+    return sorted(path.parent.glob(f"{glob.escape(path.stem)}-[0-9][0-9][0-9]{path.suffix}"))
 
 
 def short_path(path: Path) -> str:

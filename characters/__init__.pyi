@@ -48,6 +48,7 @@ from cubeling.characters.errors import (
     CharacterWarning as CharacterWarning,
 )
 from cubeling.characters.formats.loading import load_motion as load_motion
+from cubeling.characters.formats.mocap.bvh_writing import save_bvh as save_bvh
 from cubeling.characters.locomotion.footfalls import Footfall as Footfall, Footfalls as Footfalls
 from cubeling.characters.locomotion.gaits import IDLE_SPEED as IDLE_SPEED, RUN_SPEED as RUN_SPEED
 from cubeling.characters.locomotion.obstacles import Obstacle as Obstacle, TableView as TableView

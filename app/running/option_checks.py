@@ -3,7 +3,7 @@
 from cubeling.affect import Personality
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character, check_input, check_motions
-from cubeling.app.output_path import check_output, part_path
+from cubeling.app.output_path import check_output, later_parts
 from cubeling.app.pipeline.choices import check_look, check_speed_map, check_turns
 from cubeling.app.session import SessionLabels, SessionOptions, check_codec
 from cubeling.app.speaking.lines import (
@@ -40,8 +40,8 @@ def check_output_paths(options: SessionOptions) -> None:
     if options.record is not None:
         check_output(options.record, "recording", (".mcap",), overwrite=False, remedy="remove it")
         if options.part_s is not None or options.part_bytes is not None:
-            second = part_path(options.record, 2)
-            check_output(second, "recording", (".mcap",), overwrite=False, remedy="remove it")
+            for part in later_parts(options.record):
+                check_output(part, "recording", (".mcap",), overwrite=False, remedy="remove it")
     check_codec(options.codec)  # a key may record too
 
 

@@ -12,6 +12,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.step import ReplayInputs
 from cubeling.app.pipeline.table.spoken_line import Lines, SpokenLine
 from cubeling.app.pipeline.table.stage_sounds import SoundClip
+from cubeling.app.scenarios import scenario_cube
 from cubeling.app.session.acts import WizardAct, wizard_acts
 from cubeling.app.session.encoding import (
     APPEARANCE_TOPIC,
@@ -42,6 +43,7 @@ from cubeling.app.session.message_file import Message, MessageFile
 from cubeling.app.session.options import START_STAGES, SessionOptions, check_stage
 from cubeling.characters import CharacterCommand, SpeechIntent
 from cubeling.characters.speech import Samples
+from cubeling.tracking import CubeModel
 from cubeling.tracking.appearance import Appearance
 
 START_OVER_EVENT = "start over"
@@ -96,6 +98,12 @@ class SessionFile(MessageFile):
                 f"'{self.path}' goes on from '{first}', and does not hold what was before: "
                 f"replay '{first}', or this part as it was recorded with --from pose"
             )
+
+    @property
+    def cube_edge(self) -> float:
+        """Edge of the cube that it was played with [m]; raises AppError or TrackingError."""
+        options = self.info.options
+        return CubeModel.load(options.cube or scenario_cube(options.scenario)).edge
 
     @cached_property
     def labels(self) -> SessionLabels:

@@ -11,7 +11,6 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
-from cubeling.app.scenarios import scenario_cube
 from cubeling.app.session import SessionFile, frame_encoder
 from cubeling.app.session.copying import copy_session
 from cubeling.app.session.encoding import (
@@ -23,7 +22,6 @@ from cubeling.app.session.encoding import (
 )
 from cubeling.tracking import (
     CubeControls,
-    CubeModel,
     CubeState,
     Intrinsics,
     nanoseconds_of,
@@ -103,12 +101,6 @@ def anonymise(session: Path, path: Path, edge: float) -> int:
 def without_room(data: bytes) -> bytes:
     """Return an appearance without the map of the room, which shows who is in it."""
     return encode_message(replace(decode(Appearance, data), room=None))
-
-
-def edge_of(session: SessionFile) -> float:
-    """Return the edge of the cube that a session was played with [m]."""
-    options = session.info.options
-    return CubeModel.load(options.cube or scenario_cube(options.scenario)).edge
 
 
 Places = tuple[tuple[Array, Array | None], ...]

@@ -31,10 +31,10 @@ def anonymise(
         raise AppError("the session itself would be lost: name another file with --output")
     from cubeling.app.commands.play.complete import complete_session
     from cubeling.app.session import SessionFile
-    from cubeling.app.workshop.anonymising import anonymise as write_anonymised, edge_of
+    from cubeling.app.workshop.anonymising import anonymise as write_anonymised
 
     with SessionFile(session) as file:
-        edge = edge_of(file)
+        edge = file.cube_edge
     with complete_session(session) as complete:
         count = write_anonymised(complete, output, edge)
     console = Console(highlight=False, soft_wrap=True)

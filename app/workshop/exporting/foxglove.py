@@ -28,11 +28,9 @@ from cubeling.app.session import SessionFile
 from cubeling.app.session.copying import copy_session
 from cubeling.app.session.encoding import IMAGE_TOPIC, message_type
 from cubeling.app.session.recorder import calibration_message
-from cubeling.app.workshop.anonymising import edge_of
 from cubeling.app.workshop.exporting.motion import cast_of
 from cubeling.characters import Character, PosedCharacter
-from cubeling.characters.motion import rotations
-from cubeling.characters.motion.clip import Array
+from cubeling.characters.motion import Array, rotations
 from cubeling.files import write_whole
 from cubeling.tracking import CubeControls, CubeState, Intrinsics, nanoseconds_of, open_source
 
@@ -165,7 +163,7 @@ class _View:
     """What is shown of each frame of a session, computed as the pictures are copied."""
 
     def __init__(self, file: SessionFile, lens: Intrinsics) -> None:
-        self._lens, self._edge = lens, edge_of(file)
+        self._lens, self._edge = lens, file.cube_edge
         self._cast = dict(cast_of(file))
         kinds = {topic: message_type(topic) or object for topic in file.channels}
         shown = (CubeState, CubeControls, PosedCharacter, EmotionTarget)

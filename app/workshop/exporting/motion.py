@@ -9,10 +9,8 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import distinct_names
 from cubeling.app.running.asked_scenario import load_cast, scenario_of
 from cubeling.app.session import SessionFile
-from cubeling.characters import Character, Pose, PosedCharacter
-from cubeling.characters.formats.mocap.bvh_writing import save_bvh
-from cubeling.characters.motion import rotations
-from cubeling.characters.motion.clip import Array, Clip
+from cubeling.characters import Character, Clip, Pose, PosedCharacter, save_bvh
+from cubeling.characters.motion import Array, rotations
 
 MIN_FRAME_S = 1e-3
 """Frames that are nearer together give no rate [s]."""

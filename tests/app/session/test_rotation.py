@@ -112,11 +112,11 @@ def test_a_kill_leaves_all_complete_parts_whole(short_session, tmp_path):
     [
         (("--rotate-minutes", "0"), "--rotate-minutes is greater than 0"),
         (("--rotate-mb", "nan"), "--rotate-mb is greater than 0"),
-        (("--rotate-mb", "1"), "old-002.mcap' exists already"),
+        (("--rotate-mb", "1"), "old-007.mcap' exists already"),
     ],
 )
 def test_bad_input_is_one_line(cubeling, short_session, options, says):
-    Path("old-002.mcap").touch()
+    Path("old-007.mcap").touch()
     code, _, err = cubeling(
         "play", "companion", "--source", short_session, "--record", "old.mcap", *options
     )
