@@ -5,6 +5,7 @@ import threading
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 
 from cubeling.app.errors import AppError
@@ -71,7 +72,7 @@ class SessionRecording(Closeable):
         self._from_within = from_within
         self._first: float | None = None
         self._last = 0.0
-        self._make_encoder = lambda: frame_encoder(options.codec, source.size, source.rate)
+        self._make_encoder = partial(frame_encoder, options.codec, source.size, source.rate)
         self._encode = self._make_encoder()
         own = tuple(each.cube.name for each in playground.players)
         named = replace(options, cubes=(*options.cubes, *own[len(options.cubes) :]))

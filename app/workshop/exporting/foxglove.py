@@ -210,10 +210,12 @@ class _View:
         time: float,
     ) -> Message:
         message = FrameTransforms()
-        frames = [("camera", name, pose) for name, pose in cubes.items() if pose is not None]
+        frames: list[tuple[str, str, Array]] = [
+            ("camera", name, pose) for name, pose in cubes.items() if pose is not None
+        ]
         if self._table is not None:
             frames.append(("world", "table", WORLD_FROM_TABLE))
-            frames.append(("table", "camera", np.linalg.inv(self._table)))
+            frames.append(("table", "camera", np.asarray(np.linalg.inv(self._table), float)))
         for name, (posed, _) in bodies.items():
             frames.append(("table", name, posed.table_from_character))
         for parent, child, pose in frames:

@@ -3,6 +3,7 @@
 import json
 from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -21,12 +22,14 @@ from tests.app.conftest import SHORT_FRAMES
 
 def read_view(path):
     """Return the messages that Foxglove decodes by the schemas in the file: {topic: {ns: …}}."""
-    found, schemas = defaultdict(dict), {}
+    found: defaultdict[str, dict[int, Any]] = defaultdict(dict)
+    schemas: dict[str, str] = {}
     with path.open("rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         topics = [f"/view/{name}" for name in ("calibration", "transforms", "annotations", "scene")]
         for schema, channel, message, decoded in reader.iter_decoded_messages(topics=topics):
             found[channel.topic][message.log_time] = decoded
+            assert schema is not None
             schemas[channel.topic] = schema.name
     return found, schemas
 
@@ -61,11 +64,12 @@ def test_transforms_annotations_and_scene_are_in_place(shown, short_session):
             "/cube/controls": CubeControls,
             "/character/pose": PosedCharacter,
         }
-        told = defaultdict(dict)
+        told: defaultdict[int, dict[str, Any]] = defaultdict(dict)
         for topic, time, message in session.decode_messages(kinds):
             told[round(time * 1e9)][topic] = message
     with open_source(str(short_session)) as source:
         lens = source.intrinsics
+    assert lens is not None
     seen_on_table = 0
     for now, of_frame in told.items():
         state, posed = of_frame["/cube/state"], of_frame["/character/pose"]

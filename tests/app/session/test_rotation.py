@@ -84,15 +84,16 @@ def test_a_kill_leaves_all_complete_parts_whole(short_session, tmp_path):
     copied = tmp_path / "killed"
     copied.mkdir()
     with open_source(str(short_session)) as source:
+        path = tmp_path / "k.mcap"
         options = SessionOptions(
             scenario="companion",
             source=str(short_session),
-            record=tmp_path / "k.mcap",
+            record=path,
             codec="jpeg",
             part_s=0.38,
         )
         playground = Playground("companion", source.intrinsics or Intrinsics.guess(source.size))
-        recording = SessionRecording(options.record, options, playground, source, (), language="")
+        recording = SessionRecording(path, options, playground, source, (), language="")
         for frame in itertools.islice(source, 30):
             recording.write(playground.step(recording.encode(frame)), Inputs())
         recording.flush()
