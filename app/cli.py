@@ -54,6 +54,7 @@ GROUPS = {
         "dictionary.",
         "label": "Say who played a recorded session, and mark moments in it; the recording "
         "stays as it was.",
+        "join": "Write a recording in parts as one session, which replays like it.",
         "anonymise": "Blur the pictures of a session outside the cubes and the table around them.",
         "study": "Run a study: orders, tasks, questionnaires, simulated participants, a report.",
         "stimuli": "Make the films that bundled studies show, from recordings of your own.",

@@ -1,15 +1,17 @@
 """Copying the messages of a session to another file: byte for byte, or changed."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from google.protobuf.message import Message
 from mcap.reader import SeekingReader
+from mcap.records import Channel, Message as Record, Schema
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from cubeling.app.errors import AppError
+from cubeling.app.output_path import later_parts, part_path
 from cubeling.app.session.encoding import (
     IMAGE_TOPIC,
     INPUTS_TOPIC,
@@ -28,6 +30,8 @@ INPUT_TOPICS = (IMAGE_TOPIC, "/camera/calibration", INPUTS_TOPIC, LINE_TOPIC, "/
 
 Change = Callable[[str, float, bytes], bytes | None]
 """Takes a message's topic, its time [s] and its bytes; returns those to write, or None to drop."""
+
+DecodedMessage = tuple[Schema | None, Channel, Record]
 
 Added = Callable[[float], Iterable[tuple[str, RecordedInputs | Message]]]
 """Takes the time of a picture [s]; returns topics and messages that are added at that time."""
@@ -48,6 +52,42 @@ def keep_inputs(session: Path, path: Path) -> None:
     copy_session(session, path, lambda topic, _, data: data if _came_in(topic) else None, add)
 
 
+def join_parts(first: Path, path: Path) -> int:
+    """Write a recording in parts as one session, which replays like it; return how many they are.
+
+    Parameters
+    ----------
+    first
+        The file that it began with; the others are beside it.
+    path
+        The .mcap file to write; it is whole or not there.
+
+    Raises
+    ------
+    AppError
+        A part is missing, was cut off or is of another recording, or the file cannot be written.
+    """
+    later = later_parts(first)
+    with SessionFile(first) as session:
+        session.check_begins()
+    for number, part in enumerate(later, start=2):
+        if part != part_path(first, number):
+            raise AppError(f"the part '{part_path(first, number)}' is missing before '{part}'")
+        with SessionFile(part) as session:
+            if session.info.first_part != first.name:
+                raise AppError(f"'{part}' is no part of the recording '{first}'")
+    calibrated = False
+
+    def keep(topic: str, time: float, data: bytes) -> bytes | None:
+        nonlocal calibrated
+        if topic == "/camera/calibration":  # later parts have it again
+            data, calibrated = (b"" if calibrated else data), True
+        return data or None
+
+    copy_session(first, path, keep, further=later)
+    return 1 + len(later)
+
+
 def _came_in(topic: str) -> bool:
     said = topic.startswith("/cast/") and topic.endswith("/line")
     return topic in INPUT_TOPICS or said or topic.startswith(sound_topic(""))
@@ -60,6 +100,7 @@ def copy_session(
     add: Added = lambda time: (),
     *,
     pictures: type[Any] | None = None,
+    further: Sequence[Path] = (),
 ) -> None:
     """Copy the metadata and messages of a complete session.
 
@@ -75,6 +116,8 @@ def copy_session(
         What is added to each picture.
     pictures
         The Protobuf message that `change` makes of pictures; None for that of the session.
+    further
+        Complete sessions whose messages follow.
     """
     with (
         open_session_file(session) as source,
@@ -86,9 +129,7 @@ def copy_session(
         source.seek(0)
         for record in SeekingReader(source).iter_metadata():
             writer.add_metadata(record.name, record.metadata)
-        source.seek(0)
-        reader = SeekingReader(source, validate_crcs=True)
-        for schema, channel, message in reader.iter_messages(log_time_order=False):
+        for schema, channel, message in _all_messages((session, *further)):
             time = message.log_time / 1e9
             data = change(channel.topic, time, message.data)
             if data is None:
@@ -109,6 +150,15 @@ def copy_session(
                 document = more.SerializeToString() if isinstance(more, Message) else encode(more)
                 writer.add_message(ids[topic], message.log_time, document, message.log_time)
         writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
+
+
+def _all_messages(sessions: Sequence[Path]) -> Iterator[DecodedMessage]:
+    """Yield schema, channel and message of all sessions, one after another."""
+    for session in sessions:
+        with open_session_file(session) as source:
+            source.seek(0)
+            reader = SeekingReader(source, validate_crcs=True)
+            yield from reader.iter_messages(log_time_order=False)
 
 
 def _register(writer: Writer, topic: str, message: RecordedInputs | Message) -> int:

@@ -96,7 +96,7 @@ class SessionFile(MessageFile):
         if first := self.info.first_part:
             raise AppError(
                 f"'{self.path}' goes on from '{first}', and does not hold what was before: "
-                f"replay '{first}', or this part as it was recorded with --from pose"
+                f"replay '{first}', or this part as it was recorded with --from pose, or join them"
             )
 
     @property

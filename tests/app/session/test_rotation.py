@@ -68,6 +68,20 @@ def test_the_first_part_replays_exactly_and_the_others_name_it(cubeling, rotated
     assert cubeling("export", "all-002.mcap", "-o", "out")[0] == 0
 
 
+@pytest.mark.slow(reason="a session is recorded and replayed")
+def test_joined_parts_replay_exactly(cubeling, short_session):
+    record(cubeling, short_session, "all.mcap", "--codec", "h264", "--rotate-minutes", MINUTES)
+    code, out, _ = cubeling("join", "all.mcap", "-o", "whole.mcap")
+    assert (code, out) == (0, f"whole.mcap holds {PARTS} parts\n")
+    assert session_info(Path("whole.mcap")).frames == SHORT_FRAMES
+    assert cubeling("replay", "whole.mcap", "--check")[0] == 0
+    Path("all-002.mcap").unlink()
+    code, _, err = cubeling("join", "all.mcap", "-o", "less.mcap")
+    assert (code, err.count("\n")) == (2, 1)
+    assert "'all-002.mcap' is missing" in err
+    assert not Path("less.mcap").exists()
+
+
 def test_h264_parts_can_be_decoded_alone_and_are_cut_by_size(cubeling, short_session):
     size = 0.05
     record(cubeling, short_session, "s.mcap", "--codec", "h264", "--rotate-mb", size)
