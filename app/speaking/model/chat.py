@@ -179,7 +179,9 @@ def _post(url: SplitResult, body: bytes, key: str, timeout: float) -> bytes:
                 raise ModelError(f"{where} answers {answer.status} {printable(answer.reason):.60}")
             data = answer.read(MAX_ANSWER_BYTES + 1)
     except (OSError, http.client.HTTPException, ValueError) as error:
-        why = f"has not answered in {timeout:g} s" if late.is_set() else _reason(error)
+        # The time-out of the socket may come before that of the whole answer.
+        is_late = late.is_set() or isinstance(error, TimeoutError)
+        why = f"has not answered in {timeout:g} s" if is_late else _reason(error)
         raise ModelError(f"{where} {why}") from error
     finally:
         timer.cancel()
@@ -192,8 +194,6 @@ def _post(url: SplitResult, body: bytes, key: str, timeout: float) -> bytes:
 
 
 def _reason(error: Exception) -> str:
-    if isinstance(error, TimeoutError):
-        return "has not answered in time"
     if isinstance(error, OSError):
         return f"cannot be reached: {printable(error.strerror or str(error)):.80}"
     return f"breaks off: {printable(str(error) or type(error).__name__):.80}"

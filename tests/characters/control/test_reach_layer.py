@@ -16,13 +16,8 @@ from cubeling.characters.control.layers import FOOT_LAYERS
 from cubeling.characters.control.layers.gaze import GazeLayer
 from cubeling.characters.control.layers.gestures.sitting_up import SittingUpLayer
 from cubeling.characters.control.layers.posture import PostureLayer
-from cubeling.characters.control.layers.reach.layer import (
-    CLEARANCE,
-    LEAVE_S,
-    ReachingHand,
-    ReachLayer,
-    surface_of,
-)
+from cubeling.characters.control.layers.reach.hands import LEAVE_S, ReachingHand
+from cubeling.characters.control.layers.reach.layer import CLEARANCE, ReachLayer, surface_of
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.skeleton.pose import Array, Pose
 from tests.examples import some
