@@ -23,7 +23,7 @@ def test_every_condition_action_and_cue_is_on_its_page():
 
 def test_the_script_and_the_play_on_the_pages_can_be_read(tmp_path):
     example, play = (
-        re.search(r"```xml\n(.*?)```", page, re.DOTALL)[1] for page in (TALKING, SHOWS)
+        re.findall(r"```xml\n(.*?)```", page, re.DOTALL)[0] for page in (TALKING, SHOWS)
     )
     path = tmp_path / "cats.xml"
     path.write_text(example)
