@@ -105,6 +105,7 @@ def _writers() -> Iterator[tuple[str, Callable[[Path], object]]]:
     labels = SessionLabels("P1", "calm", "tired", (Mark(0.5, "error", "fell"),))
     yield "a.labels.toml", lambda path: write_labels(path.with_name("a.mcap"), labels)
     yield "study.json", lambda path: path.write_text('{"format": 1, "kind": "pilot"}\n', "utf-8")
+    yield "wizard.toml", lambda path: path.write_text(WIZARD_PLAN, "utf-8")
     yield "log.jsonl", lambda path: path.write_text(STUDY_LOG, "utf-8")
 
 
@@ -122,6 +123,15 @@ def _keep_preferences(path: Path) -> None:
 
 STUDY_LOG = """{"begins": "P1", "number": 0, "kept": [], "at": "2026-05-04T15:03:09.000"}
 {"key": "p/q/easy", "answer": 4.0, "seconds": 2.5, "at": "2026-05-04T15:03:12.000"}
+"""
+
+WIZARD_PLAN = """cues = ["placed", "child asks"]
+say = ["Hello!", "Well done!"]
+emotions = ["happy", "sad"]
+[[place]]
+name = "left"
+x_cm = -12.0
+z_cm = 3.5
 """
 
 TEXT = '<begin_gesture id="a" anim="wave"/>Hello<end_gesture id="a"/> you, it is good to see you.'
