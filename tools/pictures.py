@@ -73,7 +73,7 @@ MOMENTS_S: dict[str, dict[str, float]] = {
     "companion": {"kiss": 12.2, "window": 18.0, "shout": 27.3},
     "follow": {"walk": 6.2, "run": 12.6},
     "sketch": {"path": 22.6},
-    "reach": {"stretch": 2.5, "give": 12.3},
+    "reach": {"stretch": 30.6, "give": 10.95},
 }
 """For every recording, the pictures taken from it and their times [s]."""
 
@@ -83,7 +83,7 @@ CAST, CAST_MOMENTS_S = ("human", "vleo", "human", "vleo"), {"cast": 9.0}
 TILES = Path(__file__).parent.parent / "app" / "ui" / "playback" / "scenario_pictures"
 """Where the window finds the pictures of the scenarios."""
 
-TILE_MOMENTS_S = {"follow": 6.2, "sketch": 22.6, "companion": 12.2, "reach": 12.3}
+TILE_MOMENTS_S = {"follow": 6.2, "sketch": 22.6, "companion": 12.2, "reach": 10.95}
 """When each of them is taken [s]."""
 
 TILE_SIZE, TILE_SETTLING_S = (480, 270), 0.5

@@ -26,7 +26,7 @@ CHARACTER_RANGE_TEXELS = (3.0, 6.0)
 """Distances behind a surface from which on it shadows a character, and shadows it completely, in
 texels of the map: less is rounding, as the map has one distance for a whole texel."""
 
-SURFACE_RANGE_TEXELS = (0.6, 1.4)
+SURFACE_RANGE_TEXELS = (1.0, 2.0)
 """Heights above a triangle at which an opaque surface begins to shadow it, and does so completely,
 in texels: both are known where the texel has its distance, so that there is little rounding."""
 
