@@ -324,6 +324,7 @@ class Sender(Instrument):
         return Inputs()
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a session is computed twice")
 def test_a_session_that_osc_drove_replays_without_it_and_without_a_difference(
     short_session, tmp_path, monkeypatch

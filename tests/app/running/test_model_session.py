@@ -20,6 +20,7 @@ from tests.app import session_parts
 from tests.app.scripted import VARIANCE, Blank
 from tests.app.speaking.model.misbehaving import SAYS, model_server
 from tests.app.speaking.test_speaker import BUZZ
+from tests.examples import some
 
 RATE = 30
 SOURCE = f"talk?rate={RATE}&size=320x180&frames={7 * RATE}"
@@ -45,7 +46,7 @@ class Player(NullScreen):
 
 
 @pytest.mark.slow(reason="a session of seven seconds is animated twice")
-@pytest.mark.parametrize("manner", ["good", "broken"])
+@pytest.mark.parametrize("manner", some(["good", "broken"]))
 def test_answers_are_recorded_and_a_replay_asks_nobody(manner, tmp_path, monkeypatch):
     source = open_synthetic(SOURCE)
 

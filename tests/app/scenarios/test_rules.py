@@ -211,6 +211,7 @@ def test_a_new_file_of_rules_plays(cubeling, bundled_session):
     assert "hello.toml" in out
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a test runs its test in a program of its own")
 def test_a_new_package_has_a_test_that_passes(cubeling):
     assert cubeling("scenario", "new", "big_hello")[0] == 0

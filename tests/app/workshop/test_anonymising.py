@@ -80,6 +80,7 @@ def test_an_anonymised_session_differs_in_its_pictures_only(cubeling, bundled_se
     assert (code, len(err.splitlines())) == (2, 1)
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a part of a recording is tracked, twice")
 def test_a_session_without_video_has_all_but_the_pictures(cubeling, tmp_path, bundled_session):
     part = ("--no-pictures", "--start", 2, "--end", 3.0, "--record", "part.mcap")

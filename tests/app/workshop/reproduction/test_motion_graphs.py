@@ -71,6 +71,7 @@ def test_tables_need_four_clips(cubeling) -> None:
     assert "2 clips: give four" in error
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="all graphs of four clips are built and searched in both ways")
 def test_four_clips_give_all_cells_of_all_tables() -> None:
     human = Character.load("human")

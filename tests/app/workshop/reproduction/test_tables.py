@@ -163,6 +163,7 @@ def test_a_larger_and_more_powerful_gesture_is_larger_and_faster() -> None:
     assert all(more > less for more, less in zip(large.figures, small.figures, strict=True))
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="recordings are read and judged")
 @pytest.mark.parametrize("name", ["gesture-timing", "transitions"])
 def test_recordings_give_whole_tables(name) -> None:
