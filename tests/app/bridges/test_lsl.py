@@ -83,6 +83,7 @@ def channels(inlet):
     return found
 
 
+@pytest.mark.full
 def test_streams_say_their_units_and_have_no_rate(lsl, streams):
     cube = streams.record("cube")
     assert channels(cube)[:4] == [("x_m", "m"), ("y_m", "m"), ("z_m", "m"), ("qx", "none")]
@@ -126,6 +127,7 @@ def test_an_unseen_cube_is_no_number(streams, steps):
     assert sample[0] != sample[0]
 
 
+@pytest.mark.full
 def test_actions_events_and_marks_come_when_they_happen(streams, steps):
     actions, events, marks = map(streams.record, ("actions", "events", "marks"))
     for step in steps:

@@ -81,6 +81,7 @@ def performed(desk, clock, short_session, tmp_path):
     return steps, path
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a second of a session is played in real time, and again")
 def test_a_session_performs_the_acts_again_to_the_frame(performed):
     _, path = performed

@@ -201,6 +201,7 @@ def test_the_examples_of_the_page_can_be_read(tmp_path):
     assert counts == [3, 2]
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a session is replayed")
 def test_a_new_file_of_rules_plays(cubeling, bundled_session):
     assert cubeling("scenario", "new", "hello.toml")[0] == 0

@@ -61,6 +61,7 @@ def test_a_sound_is_heard_with_its_picture(tmp_path, suffix, live):
         assert file.streams.video[0].index == 0
 
 
+@pytest.mark.full
 def test_steps_are_heard_within_a_frame_of_the_contact(tmp_path):
     human, path = Character.load("human"), tmp_path / "walk.mp4"
     animator, cues = Animator(human), SoundCues(human)

@@ -120,6 +120,7 @@ def test_what_can_be_done_is_not_refused(take, act):
     assert Playground("follow", take.intrinsics).cast.refusal(act) == ""
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="two seconds of a person are animated")
 def test_after_a_checkpoint_acts_go_on_as_they_did(take):
     """So a player may go back in a recording in which somebody was directed."""

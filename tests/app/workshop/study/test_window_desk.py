@@ -43,6 +43,7 @@ def led(tmp_path):
         yield run
 
 
+@pytest.mark.full
 @pytest.mark.slow(reason="a window is opened, twice")
 def test_a_participant_answers_in_a_window_and_goes_on_after_it_was_closed(led, tmp_path):
     stopped = led("", "2 →", "stop")
