@@ -1,8 +1,12 @@
-"""How often threads take turns, where clients must not wait for those that compute."""
+"""How threads take turns, and hand on what they have made."""
 
+import queue
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TypeVar
+
+T = TypeVar("T")
 
 SWITCH_S = 0.0005
 """Longest time that a frame keeps the interpreter from the thread of the clients [s]. It needs it
@@ -18,3 +22,11 @@ def often_switching() -> Iterator[None]:
         yield
     finally:
         sys.setswitchinterval(usual)
+
+
+def taken(waiting: "queue.Queue[T]", otherwise: T) -> T:
+    """Return the next thing that another thread has left, or something else at once."""
+    try:
+        return waiting.get_nowait()
+    except queue.Empty:
+        return otherwise

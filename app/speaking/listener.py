@@ -12,6 +12,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.sound import NoSoundError
 from cubeling.app.speaking.microphone import MICROPHONE_HZ, SILENT_S, Microphone
+from cubeling.app.thread_turns import taken
 from cubeling.characters import CharacterError
 from cubeling.characters.speech import Samples
 
@@ -124,17 +125,11 @@ class PushToTalk:
 
     def inputs(self) -> Inputs:
         """Return what has been heard since the last call: who begins to speak interrupts."""
-        try:
-            return self._heard.get_nowait()
-        except queue.Empty:
-            return Inputs()
+        return taken(self._heard, Inputs())
 
     def notice(self) -> str:
         """Return what the player should know, in one line, once; "" for nothing."""
-        try:
-            return self._notices.get_nowait()
-        except queue.Empty:
-            return ""
+        return taken(self._notices, "")
 
     def close(self) -> None:
         """Close the microphone, within a bounded time."""

@@ -7,6 +7,7 @@ from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import ModelAnswer, ModelQuestion
 from cubeling.app.pipeline.step import Step
 from cubeling.app.speaking.model.protocol import TIMEOUT_S, LanguageModel, ModelError
+from cubeling.app.thread_turns import taken
 from cubeling.characters.speech import TaggedText
 
 WAIT_S = TIMEOUT_S + 2.0
@@ -65,10 +66,7 @@ class Answerer:
 
     def notice(self) -> str:
         """Return what the player should know, in one line, once; "" for nothing."""
-        try:
-            return self._notices.get_nowait()
-        except queue.Empty:
-            return ""
+        return taken(self._notices, "")
 
     def close(self) -> None:
         """End; an answer that is still awaited is not used any more."""

@@ -33,7 +33,7 @@ MAX_ANSWER_BYTES = 262_144
 MAX_TOKENS = 120
 """Longest reply that is asked for, in the model's own parts of words."""
 
-REMEMBERED = 12
+MAX_REMEMBERED_LINES = 12
 """Lines of both sides that are sent along."""
 
 LANGUAGES = {"en": "English", "es": "Spanish"}
@@ -96,7 +96,7 @@ class ChatModel:
             'while you say some words: <begin_gesture id="g1" anim="nod"/>words<end_gesture '
             f'id="g1"/>. Gestures: {some or "none"}.'
         )
-        self._lines: deque[dict[str, str]] = deque(maxlen=REMEMBERED)
+        self._lines: deque[dict[str, str]] = deque(maxlen=MAX_REMEMBERED_LINES)
 
     def reply(self, text: str, emotion: Emotion) -> str:
         """Return what the character says; see `LanguageModel`."""
