@@ -30,7 +30,7 @@ MAX_MARKER_CHARS = 200
 MARK_EVENT = "mark "
 """How the events of marks begin."""
 
-NUMBERS = {
+NUMBER_STREAMS = {
     "cube": (CubeState, ("x_m", "y_m", "z_m", "qx", "qy", "qz", "qw", "vx_m_s", "vy_m_s", "vz_m_s",
                          "wx_rad_s", "wy_rad_s", "wz_rad_s", "reprojection_error_px"), "MoCap"),
     "controls": (CubeControls, ("heading_rad", "turns", "x_m", "z_m"), "Control"),
@@ -39,7 +39,7 @@ NUMBERS = {
 """Streams of numbers, a sample each frame: of which message, which of its columns, and the type of
 the content by the conventions of XDF."""
 
-TEXTS = ("actions", "events", "marks")
+TEXT_STREAMS = ("actions", "events", "marks")
 """Streams of texts, a sample whenever something happens."""
 
 
@@ -49,14 +49,16 @@ class LslOut(Instrument):
     def __init__(self, name: str = "Cubeling") -> None:
         self._columns = {
             stream: tuple(each for each in COLUMNS[kind] if each.name in names)
-            for stream, (kind, names, _) in NUMBERS.items()
+            for stream, (kind, names, _) in NUMBER_STREAMS.items()
         }
-        self._kinds = {kind: stream for stream, (kind, _, _) in NUMBERS.items()}
+        self._kinds = {kind: stream for stream, (kind, _, _) in NUMBER_STREAMS.items()}
         self._outlets = {
             stream: pylsl.StreamOutlet(_numbers_info(name, stream, self._columns[stream], content))
-            for stream, (_, _, content) in NUMBERS.items()
+            for stream, (_, _, content) in NUMBER_STREAMS.items()
         }
-        self._outlets |= {stream: pylsl.StreamOutlet(_texts_info(name, stream)) for stream in TEXTS}
+        self._outlets |= {
+            stream: pylsl.StreamOutlet(_texts_info(name, stream)) for stream in TEXT_STREAMS
+        }
         self._acting = ""
 
     def follow(self, step: Step, cast: Sequence[Character], taken: float) -> Inputs:

@@ -99,7 +99,7 @@ class ShowScenario:
 
     @property
     def prepares(self) -> bool:
-        """See `PreparingScenario`."""
+        """Whether a block of BML waits for lines, which it begins by itself when they are there."""
         return self._blocks is not None and self._blocks.lines.waits
 
     def scenario_of(self, number: int, place: RootDelta) -> Scenario | None:

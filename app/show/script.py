@@ -253,8 +253,8 @@ class _Reader:
         named = element.attributes.get("for" if tag == "wait" else "what", "")
         if named and named not in self._ids:
             raise self._error(element, f"no cue before it has the id '{named:.40}'")
-        if tag == "stop" and self._ids.get(named) not in LASTING:
-            known = ", ".join(f"<{each}>" for each in LASTING)
+        if tag == "stop" and self._ids.get(named) not in STOPPABLE_TAGS:
+            known = ", ".join(f"<{each}>" for each in STOPPABLE_TAGS)
             raise self._error(element, f"what is stopped? name the id of one of {known}")
         return named
 
@@ -318,7 +318,7 @@ CUES: dict[str, tuple[str, ...]] = {
 }
 """The cues by their element, with their attributes."""
 
-LASTING = ("say", "do", "bml", "sound")
+STOPPABLE_TAGS = ("say", "do", "bml", "sound")
 """Cues that take their time, and may be cut off."""
 
 

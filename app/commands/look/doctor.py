@@ -255,7 +255,7 @@ def _lsl() -> Finding:
 PHONE_LIBRARIES = ("aiohttp", "cryptography", "segno")
 """What `cubeling serve` needs: the extra [web]."""
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "firefox-esr", "firefox")
+BROWSER_PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "firefox-esr", "firefox")
 
 
 def _phone() -> Finding:
@@ -264,7 +264,7 @@ def _phone() -> Finding:
     if absent:
         found = f"no {', '.join(absent)}: cubeling serve does not run"
         return Finding("phone", "missing", found, f"pip install {' '.join(absent)}")
-    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    browser = next(filter(None, map(shutil.which, BROWSER_PROGRAMS)), None)
     tests = "no browser here: tests of the page are left out" if browser is None else browser
     return Finding("phone", "good", f"cubeling serve runs; {tests}")
 

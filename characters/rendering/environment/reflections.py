@@ -24,7 +24,7 @@ from cubeling.characters.skeleton.pose import Array
 TILE_SIDES = (96, 48, 24, 16, 16)
 """Sides of the squares for the roughness 0, ¼, ½, ¾ and 1 [texels], without their rims."""
 
-SAMPLES = (1, 16, 24, 48, 48)
+SAMPLE_COUNTS = (1, 16, 24, 48, 48)
 """Directions that each texel takes the mean of, of those that a surface of a roughness mirrors."""
 
 PARTS = 6
@@ -128,12 +128,14 @@ def _rimmed(square: Image) -> Image:
 @cache
 def _taps() -> tuple[_Taps, ...]:
     """Return the taps of each square."""
-    mirror = texels_at(octahedral_directions(TILE_SIDES[0], math.isqrt(SAMPLES[0])), SIDES[0])
+    mirror = texels_at(octahedral_directions(TILE_SIDES[0], math.isqrt(SAMPLE_COUNTS[0])), SIDES[0])
     quarters = np.full(mirror.shape[1], 1.0 / mirror.shape[1], np.float32)
     taps = [_Taps(mirror, quarters)]
     for number, side in enumerate(TILE_SIDES[1:], 1):
         roughness = number / (len(TILE_SIDES) - 1)
-        taps.append(_rough_taps(octahedral_directions(side)[:, 0], roughness, SAMPLES[number]))
+        taps.append(
+            _rough_taps(octahedral_directions(side)[:, 0], roughness, SAMPLE_COUNTS[number])
+        )
     return tuple(taps)
 
 

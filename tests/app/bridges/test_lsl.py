@@ -181,7 +181,7 @@ def test_a_recorder_lines_up_with_the_session_and_its_markers_are_marks(
     assert mark.at_s + times[0] > pressed[0], "in a frame after the press"
     (_, _), (sample, stamp) = pull(marks, 2)
     assert sample == ["mark 1: start: now"]
-    # LSL estimates the clock of each stream anew: on a busy computer, to some milliseconds.
+    # LSL estimates the clock for each stream by itself: on a busy computer, to some milliseconds.
     assert stamp == pytest.approx(mark.at_s + times[0] + offset, abs=frame)
 
 
@@ -195,5 +195,5 @@ def test_a_marker_stream_that_is_not_there_yet_is_looked_for(lsl):
 
 def test_the_guide_names_every_stream(lsl):
     guide = (Path(__file__).parents[3] / "docs" / "instruments.md").read_text("utf-8")
-    for stream in (*lsl.bridge.NUMBERS, *lsl.bridge.TEXTS):
+    for stream in (*lsl.bridge.NUMBER_STREAMS, *lsl.bridge.TEXT_STREAMS):
         assert f"`Cubeling {stream}`" in guide

@@ -22,7 +22,7 @@ class WatchPass(RenderPass):
     """
 
     def forget(self) -> None:
-        """Read the next picture anew."""
+        """Read the next picture, and forget the one before."""
         for name in [name for name in vars(self) if name not in ("frame", "_light", "_geometry")]:
             delattr(self, name)
 

@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 SIZE_PX, SOFTWARE_SIZE_PX = (1024, 768), (512, 384)
 """Size of the pictures, as printed; and where the processor draws, which takes long."""
 
-ROUNDS = 3
-SAMPLES = (5, 11, 21)
+TIMED_ROUNDS = 3
+SAMPLE_COUNTS = (5, 11, 21)
 """k: samples on a line."""
 
 SETTINGS = AmbientOcclusionSettings(pattern_size=4, blur_size=4, radius_m=0.7)
@@ -118,7 +118,7 @@ def variants() -> dict[Variant, AmbientOcclusionSettings]:
             SETTINGS, estimator=name, samples=samples, lines=2 if separable else None
         )
         for name in THESIS_MS
-        for samples in SAMPLES
+        for samples in SAMPLE_COUNTS
         for separable in (False, True)
     }
 
@@ -137,7 +137,7 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
         closing.callback(programs.release)
         buffer = GBuffer(context, surfaces, FOCAL_SHARE * size[0])
         closing.callback(buffer.release)
-        times = measure(context, programs, buffer, variants(), ROUNDS)
+        times = measure(context, programs, buffer, variants(), TIMED_ROUNDS)
         pictures = {}
         for separable in (False, True):
             effect = AmbientOcclusion(context, programs, variants()[*SHOWN, separable])
@@ -162,7 +162,7 @@ def reproduce(request: ReproductionRequest) -> Reproduction:
             ),
         ),
         f"fifteen spheres on a floor, {size[0]}×{size[1]}, {renderer}; the blur is in it; "
-        f"{'time of all cores' if software else 'by timer queries'}, the least of {ROUNDS}",
+        f"{'time of all cores' if software else 'by timer queries'}, the least of {TIMED_ROUNDS}",
         "Printed: a GeForce GTX 480, 1024×768, scenes of 50,000 triangles; the time depends on the "
         "picture, not on them. Compare how much faster the separable form is, and that it grows "
         "with k where the full one grows with k². "
@@ -207,9 +207,9 @@ def _fits(took: Mapping[Variant, float]) -> ReportTable:
     rows = []
     for name, printed in THESIS_MS.items():
         for separable, words in ((False, "full, by k²"), (True, "separable, by 2k")):
-            counts = [each * (2 if separable else each) for each in SAMPLES]
-            theirs = fit_line(counts, [printed[each][separable] for each in SAMPLES])
-            ours = fit_line(counts, [took[name, each, separable] for each in SAMPLES])
+            counts = [each * (2 if separable else each) for each in SAMPLE_COUNTS]
+            theirs = fit_line(counts, [printed[each][separable] for each in SAMPLE_COUNTS])
+            ours = fit_line(counts, [took[name, each, separable] for each in SAMPLE_COUNTS])
             rows.append((f"{name}, {words}", *_fit_cells(theirs, ours)))
     columns = (
         *("straight line", "printed: constant [ms]", "ours"),
@@ -232,10 +232,10 @@ def _draw_times(took: Mapping[Variant, float], sheet: "Figure") -> None:
     for axes, (name, printed) in zip(panels, THESIS_MS.items(), strict=True):
         for separable, marker in ((False, "o"), (True, "s")):
             form = "separable" if separable else "full"
-            theirs = [printed[each][separable] / printed[5][0] for each in SAMPLES]
-            ours = [took[name, each, separable] / took[name, 5, False] for each in SAMPLES]
+            theirs = [printed[each][separable] / printed[5][0] for each in SAMPLE_COUNTS]
+            ours = [took[name, each, separable] / took[name, 5, False] for each in SAMPLE_COUNTS]
             axes.plot(
-                SAMPLES,
+                SAMPLE_COUNTS,
                 theirs,
                 marker,
                 linestyle="-",
@@ -243,7 +243,7 @@ def _draw_times(took: Mapping[Variant, float], sheet: "Figure") -> None:
                 label=f"printed, {form}",
             )
             axes.plot(
-                SAMPLES,
+                SAMPLE_COUNTS,
                 ours,
                 marker,
                 linestyle="--",
@@ -251,7 +251,7 @@ def _draw_times(took: Mapping[Variant, float], sheet: "Figure") -> None:
                 label=f"ours, {form}",
             )
         axes.set_title(name)
-        axes.set_xticks(SAMPLES)
+        axes.set_xticks(SAMPLE_COUNTS)
         axes.set_xlabel("k")
     panels[0].set_yscale("log")
     panels[0].yaxis.set_major_formatter(lambda value, _: f"{value:g}")

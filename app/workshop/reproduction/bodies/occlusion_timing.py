@@ -14,7 +14,7 @@ from cubeling.characters.rendering import (
     ShaderPrograms,
 )
 
-ROUNDS = 7
+TIMED_ROUNDS = 7
 """How often every variant is drawn; the least time counts, as other work only adds to it."""
 
 THESIS_MS = {
@@ -53,7 +53,7 @@ def measure(
     programs: ShaderPrograms,
     buffer: GBuffer,
     variants: Mapping[Variant, AmbientOcclusionSettings],
-    rounds: int = ROUNDS,
+    rounds: int = TIMED_ROUNDS,
 ) -> dict[Variant, OcclusionTiming]:
     """Draw all variants in turn, round by round, and return the least times of each."""
     effects = {key: AmbientOcclusion(context, programs, each) for key, each in variants.items()}

@@ -124,7 +124,7 @@ class WindowDesk(LiveDesk):
     protocol, setup, folder
         See `LiveDesk`.
     opened
-        Opens the window: anew after each task, which has a window of its own.
+        Opens the window: again after each task, which has a window of its own.
     """
 
     def __init__(
@@ -176,7 +176,7 @@ class WindowDesk(LiveDesk):
         self.tell("Thank you!", "You have finished.")
 
     def _show(self, sheet: Sheet, files: Sequence[Path] = ()) -> None:
-        """Show a sheet until it is done; films begin anew at their ends."""
+        """Show a sheet until it is done; films begin again at their ends."""
         window = self._window = self._window or self._open()
         shown = [_Shown(file) for file in files]
         scale = window.scale

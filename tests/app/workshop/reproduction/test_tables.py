@@ -144,7 +144,7 @@ def test_times_stand_beside_the_printed_ones() -> None:
     printed = {
         (name, k, separable): THESIS_MS[name][k][separable]
         for name in THESIS_MS
-        for k in ambient_occlusion.SAMPLES
+        for k in ambient_occlusion.SAMPLE_COUNTS
         for separable in (False, True)
     }
     for table in (ambient_occlusion._times(printed), ambient_occlusion._fits(printed)):
