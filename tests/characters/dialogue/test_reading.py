@@ -156,10 +156,10 @@ def test_a_pattern_of_many_stars_takes_time_that_is_linear_in_the_text() -> None
 
     def seconds(words: int) -> float:
         text = "a " * words
-        begin = time.perf_counter()
+        begin = time.thread_time()
         for _ in range(20):
             assert pattern.expression.fullmatch(text) is None
-        return time.perf_counter() - begin
+        return time.thread_time() - begin
 
     seconds(50)
     assert min(seconds(1600) for _ in range(3)) < 12 * min(seconds(400) for _ in range(3))
