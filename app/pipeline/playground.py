@@ -259,12 +259,12 @@ class Playground:
         self.sight.begin(self.cube)
 
     def adjust(self, settings: ScenarioSettings, look: str) -> None:
-        """Play on with other settings, as far as the scenario can be adjusted."""
-        if isinstance(self.scenario, AdjustableScenario):
-            with scenario_errors(type(self.scenario)):
-                self.scenario.adjust(settings)
-        self._look = look
+        """Play on with other settings, as far as the scenarios of the cast can be adjusted."""
+        self._settings, self._look = settings, look
         for member in self.cast.members:
+            if isinstance(member.scenario, AdjustableScenario):
+                with scenario_errors(type(member.scenario)):
+                    member.scenario.adjust(settings)
             member.attention.look = look
 
     def step(

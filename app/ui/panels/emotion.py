@@ -1,6 +1,7 @@
 """What character and robot feel, over the last minute."""
 
 from cubeling.affect import Emotion
+from cubeling.app.pipeline.step import RobotView
 from cubeling.app.ui.palette import INK, ROBOT_COLOR, bgr
 from cubeling.app.ui.panels.content import Fact, Panel, Plot, PlotCurve, Widget
 from cubeling.app.ui.panels.monitor import EMOTION_SPAN_S, SessionMonitor
@@ -16,10 +17,13 @@ SCALE_MARKS = (
 
 
 def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
-    """Return the emotions now, and their plots."""
+    """Return the emotions of all now, and the plots of the first character and its robot."""
     assert monitor.step is not None, "a panel is drawn after the first frame"
-    feels, shown = monitor.step.emotion.emotion, monitor.robot.shown
-    theirs = "no report" if shown is None else _words(monitor.robot.label, shown)
+    step, robot = monitor.step, monitor.robot
+    cast = [("Character", step.emotion), *((each.name, each.emotion) for each in step.others)]
+    robots = [("Robot", robot)]
+    if robot.second is not None:
+        robots.append((robot.second.name, robot.second))
     table = monitor.emotions.table()
     plots = []
     for column, title, color in ((1, "Valence", INK), (2, "Arousal", AROUSAL_COLOR)):
@@ -29,10 +33,16 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
         )
         plots.append(Plot(title, curves, EMOTION_SPAN_S, -1.0, 1.0, SCALE_MARKS[column - 1]))
     return (
-        Fact("Character", _words(feels.label, feels)),
-        Fact("Robot", theirs, "quiet" if shown is None else "plain"),
+        *(Fact(name, _words(felt.emotion.label, felt.emotion)) for name, felt in cast),
+        *(_robot(name, view) for name, view in robots),
         *plots,
     )
+
+
+def _robot(name: str, view: RobotView) -> Fact:
+    if view.shown is None:
+        return Fact(name, "no report", "quiet")
+    return Fact(name, _words(view.label, view.shown))
 
 
 def _words(label: str, emotion: Emotion) -> str:

@@ -1,5 +1,6 @@
 """What goes over the robot's line, and how well the line works."""
 
+from cubeling.app.pipeline.step import RobotView
 from cubeling.app.ui.panels.content import Fact, LogLines, Note, Panel, Tone, Widget
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.panels.wire_log import MAX_MESSAGES, Traffic, WireMessage
@@ -20,22 +21,19 @@ def content(monitor: SessionMonitor) -> tuple[Widget, ...]:
     _, protocol = protocol_of(monitor.options.robot, None)
     traffic = monitor.wire.read(protocol, robot.catalogue, robot.time)
     rows = tuple(_row(each, robot.time) for each in (*traffic.messages, *traffic.routine))
-    return (*_health(monitor.options.robot, telemetry, traffic), LogLines(rows, MAX_MESSAGES + 2))
+    facts = _health(monitor.options.robot, telemetry, traffic)
+    second = () if robot.second is None else _second(monitor.options.second_robot, robot.second)
+    return (*facts, *second, LogLines(rows, MAX_MESSAGES + 2))
 
 
 def _health(url: str, telemetry: Telemetry, traffic: Traffic) -> tuple[Widget, ...]:
     counts = telemetry.counts
-    trip = (
-        "not measured" if telemetry.round_trip is None else f"{1e3 * telemetry.round_trip:.1f} ms"
-    )
-    silence = telemetry.silence
-    heard = "never" if silence is None else f"{1e3 * silence:.0f} ms ago"
     faults = counts.retries + counts.crc_errors
     reconnections = max(counts.sessions - 1, 0)
     battery = "unknown" if telemetry.battery is None else f"{100 * telemetry.battery:.0f} %"
     facts = [
-        Fact("Link", f"{telemetry.state} on {url}", STATE_TONES.get(telemetry.state, "warning")),
-        Fact("Round trip", f"{trip}, last heard {heard}"),
+        _link("Link", url, telemetry),
+        Fact("Round trip", _trip(telemetry)),
         *(Fact(_sender(way), _flow(*traffic.rates[way])) for way in traffic.rates),
         Fact(
             "Repeated, damaged, reconnected",
@@ -49,6 +47,27 @@ def _health(url: str, telemetry: Telemetry, traffic: Traffic) -> tuple[Widget, .
     if telemetry.complaint:
         facts.append(Fact("Complaint", telemetry.complaint, "bad"))
     return tuple(facts)
+
+
+def _second(url: str, robot: RobotView) -> tuple[Widget, ...]:
+    """Return how well the line of the second player's robot works."""
+    if robot.telemetry is None:
+        return ()
+    link = _link(f"Link of {robot.name}", url, robot.telemetry)
+    return link, Fact(f"Round trip of {robot.name}", _trip(robot.telemetry))
+
+
+def _link(name: str, url: str, telemetry: Telemetry) -> Fact:
+    tone = STATE_TONES.get(telemetry.state, "warning")
+    return Fact(name, f"{telemetry.state} on {url}", tone)
+
+
+def _trip(telemetry: Telemetry) -> str:
+    """Return how long the robot takes to answer, and when it was heard last."""
+    trip, silence = telemetry.round_trip, telemetry.silence
+    measured = "not measured" if trip is None else f"{1e3 * trip:.1f} ms"
+    heard = "never" if silence is None else f"{1e3 * silence:.0f} ms ago"
+    return f"{measured}, last heard {heard}"
 
 
 def _sender(way: str) -> str:

@@ -8,12 +8,14 @@ import pytest
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import ROBOT_NAMES, checked_players, robots_of
 from cubeling.app.pipeline.player import check_players, on_table_of
-from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.pipeline.playground import Playground
+from cubeling.app.pipeline.scenario import EmotionTarget, ScenarioSettings
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, messages, session_info
 from cubeling.app.session.encoding import decode, encode
+from cubeling.characters import Character
 from cubeling.tracking import CubeModel, Frame, Intrinsics, se3
 from tests.app import session_parts
 from tests.app.scripted import Blank
@@ -147,6 +149,16 @@ def test_a_session_of_two_players_is_replayed_from_a_later_stage(played, stage):
     for before, now in zip(steps, again, strict=True):
         for topic, message in before.messages().items():
             assert encode(now.messages()[topic]) == encode(message), topic
+
+
+def test_a_setting_is_that_of_both_players_also_when_they_start_over():
+    cubes = CubeModel.load("locomotion"), CubeModel.load("locomotion-2")
+    others = [Character.load("vleo")]
+    table = Playground("companion", CAMERA, cube=cubes[0], others=others, further_cubes=cubes[1:])
+    table.adjust(ScenarioSettings(turns=4.5), "auto")
+    assert [each.scenario._turns for each in table.cast.members] == [4.5, 4.5]
+    table.play(table.scenario, cubes[0])
+    assert table.cast.members[1].scenario._turns == 4.5
 
 
 def test_cubes_that_share_a_marker_are_refused():

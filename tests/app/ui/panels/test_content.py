@@ -11,7 +11,7 @@ import pytest
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.frame_times import FrameTimes
 from cubeling.app.pipeline.scenario import EmotionTarget, Outcome
-from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.pipeline.step import Performance, RobotView, Step
 from cubeling.app.scenarios import find_scenario, scenario_names
 from cubeling.app.session import SessionOptions
 from cubeling.app.ui.panels import PANELS
@@ -132,6 +132,21 @@ def test_emotion_plots_character_and_robot():
         np.testing.assert_array_equal(above.values, ours)
 
 
+def test_the_emotions_of_a_cast_and_of_both_robots_are_named():
+    sad = Emotion(-0.5, -0.5, "sad")
+    second = RobotView("ready", 0.5, "happy", shown=Emotion(0.5, 0.25, "happy"), name="tim")
+    monitor = feed(({}, NEUTRAL, replace(NO_ROBOT, second=second)))
+    nothing: Any = None
+    other = Performance(
+        "human", Outcome(CharacterCommand(0.0), EmotionTarget(sad, 0.0), ""), nothing
+    )
+    assert monitor.step is not None
+    monitor.step = replace(monitor.step, others=(other,))
+    facts, _ = shown("emotion", monitor)
+    assert facts["human"].value == "sad (-0.50, -0.50)"
+    assert facts["tim"].value == "happy (+0.50, +0.25)"
+
+
 def test_a_minute_of_emotions_is_kept_and_no_more():
     monitor = feed(*[SEEN] * 1000)
     assert len(monitor.emotions.table()) <= 601
@@ -146,7 +161,9 @@ def test_the_line_of_a_robot_shows_health_and_messages():
         counts=LinkCounts(retries=2, crc_errors=1, sessions=2),
     )  # fmt: skip
     robot = RobotView("degraded", 0.0, "neutral", telemetry=telemetry, time=5.0)
-    options = replace(OPTIONS, robot="opencat:COM3")
+    second = RobotView("lost", 0.0, "neutral", telemetry=Telemetry("lost"), name="tim")
+    robot = replace(robot, second=second)
+    options = replace(OPTIONS, robot="opencat:COM3", second_robot="sim:pleo")
     monitor = feed(({}, NEUTRAL, robot), options=options)
     monitor.wire("tx", b"ksit\n", 4.5)
     monitor.wire("rx", b"k\n\x1b[31mred\n", 4.75)
@@ -158,6 +175,8 @@ def test_the_line_of_a_robot_shows_health_and_messages():
         "From robot": ("1 messages/s, 6 bytes/s", "plain"),
         "Repeated, damaged, reconnected": ("2, 1, 1", "warning"),
         "Battery": ("87 %", "plain"),
+        "Link of tim": ("lost on sim:pleo", "bad"),
+        "Round trip of tim": ("not measured, last heard never", "plain"),
     }
     assert log.rows == (
         ("0.5 s", "to robot", "ksit"),
