@@ -32,7 +32,7 @@ from cubeling.app.pipeline.sight import Sight
 from cubeling.app.pipeline.step import ReplayInputs, Step
 from cubeling.app.pipeline.step_renderer import DrawnBody, StepRenderer
 from cubeling.app.pipeline.table.attention import Attention
-from cubeling.app.pipeline.table.obstacles import view_of
+from cubeling.app.pipeline.table.obstacles import is_leftmost, view_of
 from cubeling.app.pipeline.table.situation import SeenCube
 from cubeling.characters import (
     Animator,
@@ -323,7 +323,9 @@ class Playground:
         things = [
             each
             for player, cube in zip(self.players, seen, strict=True)
-            for each in player.obstacles.update(cube.state, cube.controls)
+            for each in player.obstacles.update(
+                cube.state, cube.controls, from_left=is_leftmost(cube, seen)
+            )
         ]
         lead, *others = cast.perform(seen, decisions, told, tuple(things), view, replay)
         interior = self._window.update(state, controls, lead.command, inputs.inside)

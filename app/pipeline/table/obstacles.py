@@ -1,11 +1,12 @@
 """What is in the character's way: the cube, and the hand and the arm that hold it; and its view."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.pipeline.table.situation import table_from_cube
+from cubeling.app.pipeline.table.situation import SeenCube, table_from_cube
 from cubeling.characters import Obstacle, TableView
 from cubeling.tracking import CubeControls, CubeState, Intrinsics
 
@@ -36,8 +37,10 @@ class Obstacles:
         self._last_moved = -math.inf
         self._seen: tuple[float, Array] | None = None
 
-    def update(self, state: CubeState, controls: CubeControls) -> tuple[Obstacle, ...]:
-        """Return what is in the way in a frame."""
+    def update(
+        self, state: CubeState, controls: CubeControls, *, from_left: bool = False
+    ) -> tuple[Obstacle, ...]:
+        """Return what is in the way in a frame; whether the arm comes `from_left`."""
         now, table = controls.timestamp, controls.camera_from_table
         pose = table_from_cube(state, controls)
         velocity = np.zeros(3)
@@ -56,17 +59,27 @@ class Obstacles:
         cube = Obstacle(pose, np.full(3, self._edge), velocity)
         if now - self._last_moved > LETS_GO_S:
             return (cube,)
-        return cube, Obstacle(_arm(pose[:3, 3]), ARM_SIZE, velocity)
+        return cube, Obstacle(_arm(pose[:3, 3], from_left), ARM_SIZE, velocity)
 
 
-def _arm(cube: Array) -> Array:
+def is_leftmost(cube: SeenCube, cubes: Sequence[SeenCube]) -> bool:
+    """Return whether a cube lies left of all others, so that it is held from the left."""
+    places = [each.controls.position for each in cubes if each is not cube]
+    here = cube.controls.position
+    others = [place[0] for place in places if place is not None]
+    return here is not None and bool(others) and here[0] < min(others)
+
+
+def _arm(cube: Array, from_left: bool) -> Array:
     """Return where the middle of the arm is, and how it lies, (4, 4), for a cube's centre (3,)."""
-    along = (ELBOW - FINGERS) / np.linalg.norm(ELBOW - FINGERS)
+    side = np.array([-1.0 if from_left else 1.0, 1.0, 1.0])
+    fingers, elbow = FINGERS * side, ELBOW * side
+    along = (elbow - fingers) / np.linalg.norm(elbow - fingers)
     across = np.cross(along, [0.0, 1.0, 0.0])
     across /= np.linalg.norm(across)
     pose = np.eye(4)
     pose[:3, :3] = np.column_stack([along, np.cross(across, along), across])
-    pose[:3, 3] = cube + (FINGERS + ELBOW) / 2
+    pose[:3, 3] = cube + (fingers + elbow) / 2
     return pose
 
 

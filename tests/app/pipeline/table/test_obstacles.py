@@ -4,7 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from cubeling.app.pipeline.table.obstacles import KEPT_S, LETS_GO_S, Obstacles, view_of
+from cubeling.app.pipeline.table.obstacles import (
+    KEPT_S,
+    LETS_GO_S,
+    Obstacles,
+    is_leftmost,
+    view_of,
+)
+from cubeling.app.pipeline.table.situation import SeenCube
 from cubeling.tracking import CubeControls, CubeState, Intrinsics
 
 EDGE = 0.06
@@ -59,3 +66,20 @@ def test_the_view_has_the_edges_of_the_picture():
     points = np.array([[0.0, 0, 0], [beyond, 0, 0], [0.99 * beyond, 0, 0], [0, 0, 0.6]])
     assert view.misses(points, ()).tolist() == [False, True, False, True]
     assert view_of(replace(controls, camera_from_table=None), camera) is None
+
+
+def test_two_players_hold_their_cubes_from_the_outer_sides():
+    cubes = []
+    for place in ([-0.1, 0.0], [0.1, 0.0], None):
+        state, controls = frame(0.0, moving=True)
+        position = None if place is None else np.array(place)
+        cubes.append(SeenCube(state, replace(controls, position=position)))
+    left, right, unplaced = cubes
+    assert [is_leftmost(each, cubes) for each in cubes] == [True, False, False]
+    assert not is_leftmost(left, [left]), "who plays alone is right-handed"
+    assert not is_leftmost(left, [left, unplaced])
+    for cube, side in ((left, -1.0), (right, 1.0)):
+        leftmost = is_leftmost(cube, cubes)
+        _, arm = Obstacles(EDGE).update(cube.state, cube.controls, from_left=leftmost)
+        assert np.sign(arm.table_from_box[0, 3]) == side
+        assert not arm.holds(np.zeros((1, 3))), "it leaves the cube free"
