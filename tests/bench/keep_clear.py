@@ -24,7 +24,7 @@ frame, or if the cube hides it in more than 10 % of the frames of a row.
 import argparse
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +54,10 @@ Array = NDArray[np.float64]
 
 RATE, DRIVES, DRIVE_S = 30.0, 100, 12.0
 """Frames a second, and number and length [s] of the random drives."""
+
+PAIRS, PLAYERS_CUBES, PLAYERS_REACH_M = 20, ("companion", "companion-2"), 0.11
+"""Number of drives of two players, their cubes, and how far from the middle of its half of the
+table each stays [m]."""
 
 MAX_DEPTH_M, MAX_HIDDEN = 0.002, 0.10
 """The bars: how deep a vertex may be in the cube, and how often that may hide the character."""
@@ -271,12 +275,18 @@ def recorded(path: Path) -> Take:
     return Take(name, intrinsics, states, lambda time: script.state(round(time * script.rate)))
 
 
-def drive(number: int, scenario: str, edge: float) -> Take:
-    """Return a random drive: the cube slides, turns, tips, is carried, held, and rests."""
+def drive(
+    number: int, scenario: str, edge: float, middle: float = 0.0, reach: float = 0.22
+) -> Take:
+    """Return a random drive: the cube slides, turns, tips, is carried, held, and rests.
+
+    It is within a `reach` to both sides of the `middle` of its part of the table [m].
+    """
     random = np.random.default_rng(number)
 
     def place() -> tuple[float, float]:
-        return float(random.uniform(-0.22, 0.22)), float(random.uniform(-0.16, 0.20))
+        x, z = random.uniform(middle - reach, middle + reach), random.uniform(-0.16, 0.20)
+        return float(x), float(z)
 
     c = Choreography(edge, *place()).rest(1.5)
     while c.length < DRIVE_S:
@@ -318,11 +328,37 @@ def play(take: Take, kind: type[Playground], who: Surface, measure: Measure) -> 
         measure.add(step, who, take.intrinsics, edge, hand)
 
 
+def play_two(takes: tuple[Take, Take], who: Surface, measures: tuple[Measure, Measure]) -> None:
+    """Play the takes of two players side by side, and measure the character of each."""
+    cubes = [CubeModel.load(name) for name in PLAYERS_CUBES]
+    first = takes[0]
+    playground = Playground(
+        first.scenario,
+        first.intrinsics,
+        cube=cubes[0],
+        character=who.character,
+        others=[who.character],
+        further_cubes=cubes[1:],
+    )
+    image = np.zeros((*first.intrinsics.size[::-1], 3), np.uint8)
+    for measure in measures:
+        measure.last = None
+    topic = f"/cubes/{playground.players[1].name}/state"
+    for index, states in enumerate(zip(*(each.states for each in takes), strict=True)):
+        replay = ReplayInputs(state=states[0], further={topic: states[1]})
+        step = playground.step(Frame(image, states[0].timestamp, index), None, replay, drawn=False)
+        other = step.others[0]
+        second = replace(step, state=states[1], outcome=other.outcome, posed=other.posed)
+        for seen, cube, measure in zip((step, second), cubes, measures, strict=True):
+            measure.add(seen, who, first.intrinsics, cube.edge, np.zeros((0, 7)))
+
+
 def main() -> int:
     """Print the table and return an exit code."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("sessions", nargs="*", type=Path, help="left out, the bundled recordings")
     parser.add_argument("--drives", type=int, default=DRIVES, help="number of random drives")
+    parser.add_argument("--pairs", type=int, default=PAIRS, help="number of drives of two players")
     parser.add_argument("--on", action="store_true", help="only with characters that know of it")
     given = parser.parse_args()
     paths = given.sessions or [bundled_session(name) for name in RECORDED_SCENARIOS]
@@ -346,6 +382,16 @@ def main() -> int:
             # At once: the whole takes a quarter of an hour.
             console.print(_line(*measure.row(name, "on" if kind is Playground else "off")))
             failed |= kind is Playground and not measure.passes
+    who, measures = surfaces["vleo"], (Measure(), Measure())
+    for number in range(given.pairs):
+        left, right = (
+            drive(2 * number + side, "companion", 0.06, x, PLAYERS_REACH_M)
+            for side, x in enumerate((-PLAYERS_REACH_M, PLAYERS_REACH_M))
+        )
+        play_two((left, right), who, measures)
+    for player, measure in zip(("first", "second"), measures if given.pairs else (), strict=False):
+        console.print(_line(*measure.row(f"{given.pairs} drives, {player} of two", "on")))
+        failed |= not measure.passes
     return int(failed)
 
 
