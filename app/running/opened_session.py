@@ -207,8 +207,8 @@ class OpenedSession:
         return listens and not is_replay(self.replayed, self.options)
 
     def notices(self) -> Iterator[str]:
-        """Yield what the player should know of microphone and model, each once."""
-        for source in (self.listener, self.answerer):
+        """Yield what the player should know of voice, microphone and model, each once."""
+        for source in (self.speaker, self.listener, self.answerer):
             while told := source.notice():
                 yield told
 

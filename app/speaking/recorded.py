@@ -34,6 +34,10 @@ class Speaker(Protocol):
         """Take a step, to say something about it."""
         ...
 
+    def notice(self) -> str:
+        """Return what the player should know, in one line, once; "" for nothing."""
+        ...
+
     def close(self) -> None:
         """End; a second call does nothing."""
         ...
@@ -56,6 +60,10 @@ class RecordedSpeaker:
 
     def hear(self, step: Step) -> None:
         """Do nothing: what is said was recorded."""
+
+    def notice(self) -> str:
+        """Return nothing: who listens to a recording can change nothing in it."""
+        return ""
 
     def close(self) -> None:
         """Do nothing: there is no voice to close."""

@@ -5,6 +5,7 @@ import threading
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from textwrap import shorten
 
 import numpy as np
 
@@ -21,14 +22,16 @@ from cubeling.app.speaking.line_chooser import (
     events_for,
 )
 from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT, WATCHING, ScenarioLines
-from cubeling.characters import CharacterError
+from cubeling.app.thread_turns import taken
 from cubeling.characters.behaviour import estimate
 from cubeling.characters.motion import GestureLibrary
 from cubeling.characters.speech import (
     Manner,
     SpeechProfile,
     TaggedText,
+    UnspeakableError,
     Voice,
+    VoiceError,
     manner_of,
     say,
     utterance_of,
@@ -89,6 +92,7 @@ class LiveSpeaker:
         self._last = ""  # the one that has spoken last of those that only watch
         self._requests: queue.Queue[tuple[str, int, LineRequest] | None] = queue.Queue()
         self._said: queue.Queue[tuple[str, int, SpokenLine | None]] = queue.Queue()
+        self._notices: queue.Queue[str] = queue.Queue()
         self._newest: Counter[str] = Counter()
         self._asked = 0
         self._thread = threading.Thread(
@@ -139,6 +143,10 @@ class LiveSpeaker:
             wish = replace(wish, manner=combined(wish.manner, voice))
             self._requests.put((name, self._newest[name], wish))
 
+    def notice(self) -> str:
+        """Return what the player should know, in one line, once; "" for nothing."""
+        return taken(self._notices, "")
+
     @property
     def _spoken(self) -> str:
         """The language of a reply that does not say its own."""
@@ -173,11 +181,12 @@ class LiveSpeaker:
             self._voice.close()
 
     def _run(self, gestures: Sequence[GestureLibrary]) -> None:
-        failures = 0
+        failures, told = 0, ""
         self._prepare(gestures)
         while (asked := self._requests.get()) is not None:
             name, number, request = asked
             self._prepare(gestures)
+            tagged, wrong = TaggedText.read_or_plain(request.text)
             line = None
             wanted = number == self._newest[name]  # else it was cut off, or another one came
             voice = None if self.language == SILENT else self._voice
@@ -185,12 +194,17 @@ class LiveSpeaker:
                 try:
                     line = line_of(voice, request, self.profile)
                     failures = 0
-                except CharacterError as error:
+                except UnspeakableError as error:
+                    wrong = wrong or str(error)  # of this text; the voice says the next one
+                except VoiceError as error:
                     failures += 1
                     if failures == MAX_FAILURES:
                         self.problem = str(error)
             if line is None and wanted and request.is_reply:
                 line = soundless_line(request, self.profile)
+            if wrong not in ("", told):
+                self._notices.put(f"“{shorten(tagged.text, 40, placeholder='…')}”: {wrong}")
+                told = wrong
             self._said.put((name, number, line))
 
     def _prepare(self, gestures: Sequence[GestureLibrary]) -> None:
@@ -212,7 +226,7 @@ def reply_request(reply: Reply, emotion: Emotion) -> LineRequest:
 
 def soundless_line(request: LineRequest, profile: SpeechProfile) -> SpokenLine:
     """Return a line that takes as long as a voice would, for who reads it."""
-    tagged = TaggedText.read(request.text)
+    tagged, _ = TaggedText.read_or_plain(request.text)
     said = estimate(tagged.text)
     spans = tagged.gesture_spans(said.words, said.duration)
     said = replace(said, language=request.language, gestures=spans)
@@ -221,14 +235,14 @@ def soundless_line(request: LineRequest, profile: SpeechProfile) -> SpokenLine:
 
 
 def line_of(voice: Voice, request: LineRequest, profile: SpeechProfile) -> SpokenLine:
-    """Return a line as a voice says it.
+    """Return a line as a voice says it; without its gestures if their tags do not fit together.
 
     Raises
     ------
-    CharacterError
-        The voice failed, or the tags of the line do not fit together.
+    VoiceError
+        The voice failed, or cannot say this text.
     """
-    tagged = TaggedText.read(request.text)
+    tagged, _ = TaggedText.read_or_plain(request.text)
     speech = say(voice, tagged.text, request.language, request.manner)
     utterance = utterance_of(speech, tagged, profile.accents)
     return SpokenLine(utterance, speech.samples, speech.rate, profile)

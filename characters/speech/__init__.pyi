@@ -75,6 +75,7 @@ from cubeling.characters.speech.voices.espeak import (
 from cubeling.characters.speech.voices.feeling import manner_of as manner_of
 from cubeling.characters.speech.voices.voice import (
     Manner as Manner,
+    UnspeakableError as UnspeakableError,
     Voice as Voice,
     VoiceError as VoiceError,
 )

@@ -35,6 +35,7 @@ NEW_TOPIC = "\n\n"
 
 _TAG = re.compile(r"<\s*(begin|end)_gesture\b([^<>]*?)/?\s*>")
 _TOPIC = re.compile(r"\s*<\s*topic\s*/\s*>\s*")
+_ANY_TAG = re.compile(r"<[^<>]*>?")
 _ATTRIBUTE = re.compile(r"""(\w+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 
 
@@ -107,6 +108,19 @@ class TaggedText:
             raise CharacterError(f"gesture {names} never ends; add <end_gesture id=…/>")
         text = "".join([*parts, marked[copied:]])
         return TaggedText(text, tuple(sorted(spans, key=lambda span: (span.start, span.end))))
+
+    @staticmethod
+    def read_or_plain(marked: str) -> "tuple[TaggedText, str]":
+        """Read a text, without any tags if they do not fit together, and return why; "" if they do.
+
+        >>> said, why = TaggedText.read_or_plain('<begin_gesture id="a" anim="wave"/>Hi')
+        >>> said, why
+        (TaggedText(text='Hi', spans=()), "gesture 'a' never ends; add <end_gesture id=…/>")
+        """
+        try:
+            return TaggedText.read(marked), ""
+        except CharacterError as error:
+            return TaggedText(" ".join(_ANY_TAG.sub(" ", marked).split()), ()), str(error)
 
     def gesture_spans(self, words: Sequence[Word], duration: float) -> tuple[GestureSpan, ...]:
         """Return the gestures with the times of the words that they go with.

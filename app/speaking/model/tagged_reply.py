@@ -4,7 +4,6 @@ import re
 from collections.abc import Collection
 
 from cubeling.app.speaking.model.protocol import ModelError
-from cubeling.characters import CharacterError
 from cubeling.characters.behaviour import MAX_LINE_CHARS
 from cubeling.characters.speech import TaggedText
 
@@ -55,10 +54,10 @@ def tagged_reply(written: str, gestures: Collection[str]) -> tuple[str, str]:
         at = tag.end()
     text = " ".join("".join([*parts, _MARKDOWN.sub("", written[at:])]).split())
     notes = [f"tags left out: {', '.join(dropped)[:80]}"] if dropped else []
-    try:
-        plain = TaggedText.read(text).text
-    except CharacterError:
-        text = plain = " ".join(_TAG.sub("", text).split())
+    said, wrong = TaggedText.read_or_plain(text)
+    plain = said.text
+    if wrong:
+        text = plain
         notes.append("its tags do not fit together: all of them left out")
     if not any(c.isalnum() for c in plain):
         raise ModelError("the model's reply has no words")

@@ -55,6 +55,10 @@ class VoiceError(CharacterError):
         self.remedy = remedy
 
 
+class UnspeakableError(VoiceError):
+    """A voice works, but cannot say a text."""
+
+
 @dataclass(frozen=True)
 class Manner:
     """How a text is spoken; 1 is usual everywhere."""
@@ -102,9 +106,11 @@ class Voice:
             long.
         """
         if not text.strip():
-            raise VoiceError("there is no text to say")
+            raise UnspeakableError("there is no text to say")
         if len(text) > MAX_TEXT:
-            raise VoiceError(f"the text has {len(text)} characters: up to {MAX_TEXT} can be said")
+            raise UnspeakableError(
+                f"the text has {len(text)} characters: up to {MAX_TEXT} can be said"
+            )
         request: dict[str, Any] = {
             "text": text,
             "language": language,
@@ -122,7 +128,7 @@ class Voice:
             self.close()
             raise VoiceError(f"the voice '{self._command[0]}' failed: {error}") from error
         if speech.duration < SHORTEST_S:
-            raise VoiceError(f"there is nothing to say in '{text.strip()[:40]}'")
+            raise UnspeakableError(f"there is nothing to say in '{text.strip()[:40]}'")
         return speech
 
     def close(self) -> None:
