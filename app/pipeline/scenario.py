@@ -350,10 +350,10 @@ class GesturingScenario(Protocol):
 
 @runtime_checkable
 class ConversingScenario(ListeningScenario, GesturingScenario, Protocol):
-    """A scenario that answers by a script."""
+    """A scenario that answers by a script, or may do so later on."""
 
-    script: "DialogueScript"
-    """What it has an answer to."""
+    conversation: "DialogueScript | None"
+    """What it has an answer to; None for nothing."""
 
     @property
     def language(self) -> str:

@@ -228,7 +228,7 @@ def open_session(
             speaker=speaker,
             stage_sounds=stage_sounds,
             listener=PushToTalk(),
-            answerer=open_answerer(options, None if replays else scenario, waits=stepped),
+            answerer=open_answerer(options, replays=replays, waits=stepped),
             robot=robot,
             second_robot=second,
             wire=wire,

@@ -24,6 +24,7 @@ from cubeling.app.show.block_player import BlockPlayer
 from cubeling.app.show.script import ShowCue, ShowScript, read_show
 from cubeling.app.show.stage_state import StageState
 from cubeling.characters import ActionIntent, CharacterCommand, LocomotionIntent, RootDelta
+from cubeling.characters.behaviour import DialogueScript
 from cubeling.characters.speech import TaggedText
 from cubeling.tracking import CubeControls, CubeModel
 
@@ -65,6 +66,9 @@ class ShowScenario:
     dialogue: ClassVar[type[DialogueScenario] | None]
     """What takes over; None for nothing."""
 
+    conversation: ClassVar[DialogueScript | None]
+    """The script of that; see `ConversingScenario`."""
+
     name: str
     summary: str
     cube = "companion"
@@ -96,6 +100,14 @@ class ShowScenario:
         self._coming: list[ShowCue] = []
         self._talk: DialogueScenario | None = None
         self._talked_at = 0.0
+
+    @property
+    def language(self) -> str:
+        """Code of the language in which it answers now."""
+        first = (
+            self.script.language if self.conversation is None else self.conversation.languages[0]
+        )
+        return first if self._talk is None else self._talk.language
 
     @property
     def prepares(self) -> bool:
@@ -213,6 +225,9 @@ def show_scenario(path: str | Path) -> type[ShowScenario]:
             asked.setdefault(cue.text, script.place(cue.line))
         for span in TaggedText.read(cue.text).spans if cue.kind == "say" else ():
             gestures.setdefault(span.name, script.place(cue.line))
+    dialogue = dialogue_scenario(script.talk) if script.talk else None
+    if dialogue is not None:
+        asked, gestures = {**dialogue.asked, **asked}, {**dialogue.gestures, **gestures}
     first, *others = script.cast
     members = {
         "__module__": __name__,
@@ -221,8 +236,9 @@ def show_scenario(path: str | Path) -> type[ShowScenario]:
         "asked": asked,
         "gestures": gestures,
         "sounds": script.sounds,
-        "dialogue": dialogue_scenario(script.talk) if script.talk else None,
-        "listens": bool(script.talk),
+        "dialogue": dialogue,
+        "conversation": None if dialogue is None else dialogue.script,
+        "listens": dialogue is not None,
         "name": str(path),
         "summary": script.summary,
         "character": first.body,

@@ -30,6 +30,8 @@ from cubeling.app.commands.play.play_options import (
     IntrinsicsOption,
     LanguageOption,
     LinesOption,
+    ModelNameOption,
+    ModelOption,
     MotionsOption,
     NotesOption,
     OutputOption,
@@ -50,6 +52,7 @@ from cubeling.app.commands.play.play_options import (
     SourceOption,
     VideoOption,
     codecs_of,
+    model_of,
     parts_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
@@ -105,6 +108,8 @@ def play(
     personality: PersonalityOption = None,
     language: LanguageOption = None,
     lines: LinesOption = None,
+    model: ModelOption = None,
+    model_name: ModelNameOption = "default",
     profile: ProfileOption = "usual",
     settings: SettingsOption = None,
     voice: VoiceOption = None,
@@ -164,6 +169,7 @@ def play(
         language=language,
         lines=lines,
         voice=voice,
+        **model_of(model, model_name),
         profile=profile_of(profile, settings),
         look=look,
         realism=realism_of(realism),

@@ -112,6 +112,19 @@ LanguageOption = Annotated[
         "a window it speaks English unless you choose."
     ),
 ]
+ModelOption = Annotated[
+    str | None,
+    typer.Option(
+        "--model",
+        metavar="URL",
+        help="The address of a language model that is asked where the script of a talk has no "
+        "answer of its own, such as http://localhost:11434/v1. What you say is sent there.",
+        rich_help_panel=SPEECH_GROUP,
+    ),
+]
+ModelNameOption = Annotated[
+    str, typer.Option(help="The model's name at that address.", rich_help_panel=SPEECH_GROUP)
+]
 LinesOption = Annotated[
     Path | None,
     typer.Option(
@@ -264,6 +277,18 @@ def parts_of(minutes: float | None, megabytes: float | None) -> dict[str, Any]:
         "part_s": None if minutes is None else 60.0 * minutes,
         "part_bytes": None if megabytes is None else math.ceil(1e6 * megabytes),
     }
+
+
+def model_of(address: str | None, name: str) -> dict[str, Any]:
+    """Return the fields of the options that say which language model is asked, if any is.
+
+    Raises AppError if the address is none.
+    """
+    if address is not None:
+        from cubeling.app.speaking.model.chat import checked_url  # loads what TLS needs
+
+        checked_url(address)
+    return {"model": address, "model_name": name, "asks_model": address is not None}
 
 
 def codecs_of(codec: str, record: Path | None, output: Path | None) -> tuple[str, str]:

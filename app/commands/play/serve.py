@@ -19,6 +19,8 @@ from cubeling.app.commands.play.play_options import (
     FolderOption,
     IntrinsicsOption,
     LanguageOption,
+    ModelNameOption,
+    ModelOption,
     PersonalityOption,
     PlayersOption,
     QualityOption,
@@ -26,6 +28,7 @@ from cubeling.app.commands.play.play_options import (
     RobotsOption,
     codecs_of,
     describe,
+    model_of,
 )
 from cubeling.app.commands.play.preference_options import DEFAULT_FILE, GivenPreferences
 from cubeling.app.errors import AppError
@@ -86,6 +89,8 @@ def serve(
     cast: CastOption = None,
     personality: PersonalityOption = None,
     language: LanguageOption = None,
+    model: ModelOption = None,
+    model_name: ModelNameOption = "default",
     intrinsics: IntrinsicsOption = None,
     quality: QualityOption = AUTO_QUALITY,
     robots: RobotsOption = None,
@@ -135,6 +140,7 @@ def serve(
         players=checked_players(players),
         personality=personality,
         language=language,
+        **model_of(model, model_name),
         intrinsics=intrinsics,
         quality=checked_quality(quality),
         robot=robot,

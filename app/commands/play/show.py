@@ -13,9 +13,12 @@ from cubeling.app.commands.play.instrument_options import GivenInstruments, with
 from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
     FolderOption,
+    ModelNameOption,
+    ModelOption,
     OutputOption,
     RecordOption,
     SourceOption,
+    model_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
@@ -39,6 +42,8 @@ def show(
     overwrite: OverwriteOption = False,
     record: RecordOption = None,
     voice: VoiceOption = None,
+    model: ModelOption = None,
+    model_name: ModelNameOption = "default",
     codec: VideoCodecOption = "auto",
     folder: FolderOption = None,
     *,
@@ -64,6 +69,7 @@ def show(
         source=DESK if written and source == DEFAULT_CAMERA else source,
         language=language,
         voice=voice,
+        **model_of(model, model_name),
         record=record,
         output=output,
         overwrite=overwrite,

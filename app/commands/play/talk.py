@@ -19,10 +19,13 @@ from cubeling.app.commands.play.play_options import (
     FILES_GROUP,
     CharacterOption,
     FolderOption,
+    ModelNameOption,
+    ModelOption,
     OutputOption,
     PersonalityOption,
     RecordOption,
     RobotSettingsOption,
+    model_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
@@ -84,15 +87,8 @@ def talk(
     record: RecordOption = None,
     personality: PersonalityOption = None,
     voice: VoiceOption = None,
-    model: Annotated[
-        str | None,
-        typer.Option(
-            metavar="URL",
-            help="The address of a language model that is asked where the script has no answer of "
-            "its own, such as http://localhost:11434/v1. What you say is sent there.",
-        ),
-    ] = None,
-    model_name: Annotated[str, typer.Option(help="The model's name at that address.")] = "default",
+    model: ModelOption = None,
+    model_name: ModelNameOption = "default",
     robot_settings: RobotSettingsOption = None,
     codec: VideoCodecOption = "auto",
     folder: FolderOption = None,
@@ -120,10 +116,7 @@ def talk(
     check_input(typed, "text")
     for path in microphone or ():
         check_input(path, "sound")
-    if model is not None:
-        from cubeling.app.speaking.model.chat import checked_url
-
-        checked_url(model)
+    asked = model_of(model, model_name)
     if typed is not None and microphone:
         raise AppError("give --typed or --microphone, not both")
     from cubeling.app.running.option_checks import check_inputs, check_output_paths
@@ -138,9 +131,7 @@ def talk(
         talk_language="" if language == "none" else language,
         personality=personality,
         voice=voice,
-        model=model,
-        model_name=model_name,
-        asks_model=model is not None,
+        **asked,
         robot=robot,
         robot_settings=robot_settings,
         record=record,

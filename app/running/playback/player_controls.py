@@ -126,8 +126,12 @@ class PlayerControls:
         scenario = session.playground.scenario
         if session.listener.listening:
             session.listener.end()
-        elif session.listens and isinstance(scenario, ConversingScenario):
-            session.listener.begin(scenario.script, scenario.language)
+        elif (
+            session.listens
+            and isinstance(scenario, ConversingScenario)
+            and scenario.conversation is not None
+        ):
+            session.listener.begin(scenario.conversation, scenario.language)
         else:
             session.screen.notify("Nobody listens here: a talk does")
 

@@ -51,6 +51,9 @@ class DialogueScenario:
     script: ClassVar[DialogueScript]
     """What can be said."""
 
+    conversation: ClassVar[DialogueScript]
+    """The same; see `ConversingScenario`."""
+
     asked: ClassVar[Mapping[str, str]]
     """See `AskingScenario`."""
 
@@ -231,6 +234,7 @@ def dialogue_scenario(path: str | Path, name: str | None = None) -> type[Dialogu
         "__module__": __name__,
         "__doc__": script.summary,
         "script": script,
+        "conversation": script,
         "asked": asked,
         "gestures": gestures,
         "name": name or str(path),

@@ -2,6 +2,7 @@
 
 import queue
 import threading
+from collections.abc import Callable
 
 from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import ModelAnswer, ModelQuestion
@@ -17,6 +18,10 @@ CLOSE_TIMEOUT_S = 0.5
 """How long a session waits at its end for a model that does not answer [s]."""
 
 
+ModelOf = Callable[[str], LanguageModel | None]
+"""Returns the model that answers in a scenario, by its name; None where nobody does."""
+
+
 class Answerer:
     """Asks a model what scenarios want to know; no frame of a live session waits for it.
 
@@ -24,34 +29,39 @@ class Answerer:
 
     Parameters
     ----------
-    model
-        The model; None to answer nothing.
+    model_of
+        Returns the model that answers in a scenario, by its name; None where nobody does.
     waits
         Whether the session is not in real time, so that the next frame waits for an answer.
     """
 
-    def __init__(self, model: LanguageModel | None = None, *, waits: bool = False) -> None:
-        self._model, self._waits = model, waits
-        self._questions: queue.Queue[tuple[ModelQuestion, Emotion] | str | None] = queue.Queue()
+    def __init__(self, model_of: ModelOf | None = None, *, waits: bool = False) -> None:
+        self._model_of, self._waits = model_of, waits
+        self._questions: queue.Queue[
+            tuple[LanguageModel, tuple[ModelQuestion, Emotion] | str] | None
+        ] = queue.Queue()
         self._answers: queue.Queue[ModelAnswer] = queue.Queue()
         self._notices: queue.Queue[str] = queue.Queue()
         self._asked = 0
         self._newest = 0
         self._thread = threading.Thread(target=self._run, name="model", daemon=True)
-        if model is not None:
+        if model_of is not None:
             self._thread.start()
 
     def hear(self, step: Step) -> None:
         """Ask what the scenario of a step wants to know."""
-        if self._model is None:
+        scenario = step.cast[0].scenario
+        model = None if self._model_of is None else self._model_of(scenario)
+        if model is None:
             return
         outcome = step.outcome
         if outcome.question is not None:
             self._asked += 1
             self._newest = outcome.question.number
-            self._questions.put((outcome.question, step.emotion.emotion))
+            self._questions.put((model, (outcome.question, step.emotion.emotion)))
         elif outcome.reply is not None and not outcome.reply.is_answer:
-            self._questions.put(TaggedText.read(outcome.reply.text).text)
+            said, _ = TaggedText.read_or_plain(outcome.reply.text)
+            self._questions.put((model, said.text))
 
     def answer(self) -> ModelAnswer | None:
         """Return the next answer that has come; None for none."""
@@ -75,18 +85,18 @@ class Answerer:
             self._thread.join(CLOSE_TIMEOUT_S)
 
     def _run(self) -> None:
-        assert self._model is not None
-        while (asked := self._questions.get()) is not None:
+        while (waiting := self._questions.get()) is not None:
+            model, asked = waiting
             if isinstance(asked, str):
-                self._model.remember(asked)
+                model.remember(asked)
                 continue
             question, emotion = asked
             if question.number != self._newest:
                 continue  # the player has said something else since
             text, told = "", ""
             try:
-                text = self._model.reply(question.text, emotion)
-                told = self._model.note
+                text = model.reply(question.text, emotion)
+                told = model.note
             except ModelError as error:
                 told = f"{error}; the script answers"
             if told:
