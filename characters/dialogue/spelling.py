@@ -1,9 +1,10 @@
 """The words that a script knows: what language a text is in, and what a misspelt word means."""
 
 import difflib
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Self
 
 MIN_LETTERS = 4
@@ -11,6 +12,30 @@ MIN_LETTERS = 4
 
 SHORT_LETTERS, SHORT_LIKENESS, LIKENESS = 5, 0.84, 0.74
 """How like another word a misspelt one is (`difflib`, 0…1): up to so many letters, and above."""
+
+SOUND_ALIKE: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "en": (
+        (r"ph", "f"), (r"wh", "w"), (r"ck|c(?=[aou])", "k"), (r"^kn", "n"), (r"ou", "o"),
+        (r"(.)\1", r"\1"), (r"(?<=[^aeiou])e$", ""),
+    ),
+    "es": (
+        (r"ch", "ç"), (r"qu(?=[ei])|c(?=[^eiç]|$)", "k"), (r"c|z", "s"), (r"g(?=[ei])", "j"),
+        (r"gu(?=[ei])", "g"), (r"h", ""), (r"ll", "y"), (r"v", "b"),
+    ),
+}  # fmt: skip
+"""Letters of a language that sound alike, as patterns with what is written instead, in turn:
+children write as they hear."""
+
+
+def sound_of(word: str, language: str) -> str:
+    """Return a word in letters that differ where it sounds different.
+
+    >>> sound_of("yamo", "es") == sound_of("llamo", "es"), sound_of("wat", "en")
+    (True, 'wat')
+    """
+    for letters, sound in SOUND_ALIKE.get(language, ()):
+        word = re.sub(letters, sound, word)
+    return word
 
 
 @dataclass(frozen=True)
@@ -74,9 +99,24 @@ class Spelling:
         }
         return max(counts, key=lambda each: (counts[each], each == present), default=present)
 
+    @cached_property
+    def _by_sound(self) -> Mapping[str, Mapping[str, str]]:
+        """The shortest word of the patterns for each of their sounds, by language."""
+        return {
+            language: {
+                sound_of(word, language): word
+                for word in sorted(matched.words, key=lambda each: (-len(each), each))
+            }
+            for language, matched in self.matched.items()
+        }
+
     def correct(self, words: tuple[str, ...], language: str) -> tuple[str, ...]:
         """Return the words with those that are misspelt as the patterns have them."""
         known, matched = self.known.get(language, frozenset()), self.matched.get(language)
         if matched is None:
             return words
-        return tuple(w if w in known else matched.closest(w) or w for w in words)
+        by_sound = self._by_sound[language]
+        return tuple(
+            w if w in known else by_sound.get(sound_of(w, language)) or matched.closest(w) or w
+            for w in words
+        )
