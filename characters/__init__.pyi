@@ -3,6 +3,7 @@ from cubeling.characters.control.builtin_tree import built_in_trees as built_in_
 from cubeling.characters.control.command import (
     ActionIntent as ActionIntent,
     CharacterCommand as CharacterCommand,
+    ComingAct as ComingAct,
     LocomotionIntent as LocomotionIntent,
     PosedCharacter as PosedCharacter,
     SpeechIntent as SpeechIntent,

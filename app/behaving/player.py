@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from cubeling.app.behaving.voice import LineSource
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
 from cubeling.app.show.blocks import BehaviourOptions, BlockDirector, command_of
-from cubeling.characters import Animator, Character, PosedCharacter, RootDelta
+from cubeling.characters import Animator, Character, ComingAct, PosedCharacter, RootDelta
 from cubeling.characters.behaviour import Feedback, RealizedFrame, Saying
 from cubeling.characters.speech import Utterance
 
@@ -56,15 +56,16 @@ class BehaviourPlayer:
     def update(self, now: float) -> BehaviourFrame:
         """Advance to a time [s] and return the frame."""
         realized, feedback = self.director.update(now)
-        return BehaviourFrame(self._perform(realized), realized, feedback)
+        coming = self.director.coming(now)
+        return BehaviourFrame(self._perform(realized, coming), realized, feedback)
 
     def settle(self, seconds: float, rate: float) -> None:
         """Stand for a time before time 0, in frames of a rate [Hz]: eyes find the viewer."""
         for number in range(-round(seconds * rate), 0):
             self._perform(RealizedFrame(number / rate))
 
-    def _perform(self, realized: RealizedFrame) -> PosedCharacter:
-        command = command_of(realized, self.emotion, self.director.who)
+    def _perform(self, realized: RealizedFrame, coming: ComingAct | None = None) -> PosedCharacter:
+        command = command_of(realized, self.emotion, self.director.who, coming)
         posed = self._animator.update(command)
         self.director.move(posed)
         return posed

@@ -119,10 +119,12 @@ class BlockPlayer:
             each for each in self._begun if director.realizer.end_of(each[1]) is not None
         ]
         asked = command_of(realized, None, director.who)
+        soon = (each for each in (outcome.command.coming, director.coming(now)) if each is not None)
         goes = realized.going is not None or realized.facing is not None
         command = replace(
             outcome.command,
             behaviour=asked.behaviour,
+            coming=min(soon, key=lambda each: each.start, default=None),
             locomotion=asked.locomotion if goes else outcome.command.locomotion,
         )
         before, self._saying = self._saying, realized.sayings[-1] if realized.sayings else None

@@ -17,6 +17,7 @@ from cubeling.characters import (
     Character,
     CharacterCommand,
     CharacterError,
+    ComingAct,
     LocomotionIntent,
     PosedCharacter,
     RootDelta,
@@ -94,6 +95,10 @@ class BehaviourOptions:
     """Whether only BML 1.0 and FML are read; else also drafts and dialects, with warnings."""
 
 
+BODY_KINDS = ("gesture", "pointing", "posture", "postureShift", "locomotion")
+"""Kinds of behaviours before which a shift of the weight ends."""
+
+
 class BlockDirector:
     """Directs a character by blocks: what it does in each frame, and what is reported.
 
@@ -168,6 +173,12 @@ class BlockDirector:
         placed = posed.table_from_character
         self.who.surroundings.move(placed, self._eye_height)
         self._place = RootDelta(float(placed[0, 3]), float(placed[2, 3]), self.who.surroundings.yaw)
+
+    def coming(self, now: float) -> ComingAct | None:
+        """Return when hands or body begin something next, after a time [s]; None for nothing."""
+        starts = (e.start for e in self.realizer.scheduled if e.behaviour.kind in BODY_KINDS)
+        following = min((start for start in starts if start > now), default=math.inf)
+        return ComingAct(following) if following < math.inf else None
 
     def prepare(self) -> None:
         """Measure what would make a frame late."""
@@ -263,7 +274,10 @@ def place_unknown(block: Block, places: NamedPlaces) -> Iterator[str]:
 
 
 def command_of(
-    realized: RealizedFrame, emotion: Emotion | None, who: RealizationContext
+    realized: RealizedFrame,
+    emotion: Emotion | None,
+    who: RealizationContext,
+    coming: ComingAct | None = None,
 ) -> CharacterCommand:
     """Return the command for what a character does in a frame; it looks at the viewer else."""
     viewer = who.surroundings.places.get("viewer")
@@ -282,6 +296,7 @@ def command_of(
         emotion=emotion,
         speech=speech,
         behaviour=realized.intent,
+        coming=coming,
     )
 
 

@@ -191,6 +191,7 @@ class ShowScenario:
             locomotion=LocomotionIntent(facing=PLAYER_POSITION),
             action=ActionIntent(action, weight),
             visible=visible,
+            coming=self._stage.coming(self._who, now),
         )
         hint = self.script.summary if controls.visible else "Show me the cube"
         events = (OVER_EVENT,) if self._stage.is_over(now) else ()

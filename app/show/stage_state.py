@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from cubeling.app.pipeline.table.stage_sounds import PlayedSound, SoundClip
 from cubeling.app.show.script import ShowCue, ShowScript
+from cubeling.characters import ComingAct
 
 MAX_WAIT_S = 6.0
 """A voice that has not answered after so long does not answer any more [s]."""
@@ -145,6 +146,25 @@ class StageState:
         """Return the action of a character that began last and goes on."""
         own = [e for e in self.ongoing.values() if e.cue.who == who and e.cue.kind == "do"]
         return next((each for each in reversed(own) if now < each.end), None)
+
+    def coming(self, who: int, now: float) -> ComingAct | None:
+        """Return what a character does next by the cues, as far as their times are known."""
+        if self.talks or self.since is None:
+            return None
+        due = self.since
+        for cue in self.script.cues[self.next :]:
+            if cue.kind == "wait" and not cue.text:
+                due += cue.seconds
+            elif cue.kind == "wait":
+                awaited = self.named(cue.text)
+                if awaited is None or awaited.end == math.inf:
+                    return None  # it has not begun, or its voice has not answered
+                due = max(due, awaited.end - cue.seconds)
+            elif cue.kind == "talk":
+                return None
+            elif cue.who == who and cue.kind in ("do", "say", "bml") and due > now:
+                return ComingAct(due, cue.text if cue.kind == "do" else "")
+        return None
 
     def is_over(self, now: float) -> bool:
         """Return whether the last cue was carried out, and nothing goes on."""

@@ -73,6 +73,17 @@ class SpeechIntent:
 
 
 @dataclass(frozen=True)
+class ComingAct:
+    """What a character will be asked to do soon, where that is known."""
+
+    start: float
+    """When [s]."""
+
+    action: str = ""
+    """Name of the action; "" for gestures, and for what it says."""
+
+
+@dataclass(frozen=True)
 class CharacterCommand:
     """What a scenario asks of a character in one frame: intents, each optional."""
 
@@ -105,6 +116,9 @@ class CharacterCommand:
 
     view: TableView | None = None
     """How the table is seen: it prefers places where it is seen, too; None for any place."""
+
+    coming: ComingAct | None = None
+    """What it will do next: a shift of its weight ends before that. None where nobody knows."""
 
     @property
     def speaks(self) -> bool:

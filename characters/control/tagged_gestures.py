@@ -1,5 +1,6 @@
 """Gestures of a tagged text: the behaviours of BML, at the times of its words."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -15,7 +16,7 @@ from cubeling.characters.behaviour.realization.character_realizer import Charact
 from cubeling.characters.behaviour.realization.frame import RealizationContext
 from cubeling.characters.behaviour.realization.hand_kinds import meaning_of
 from cubeling.characters.behaviour.realization.surroundings import NamedPlaces
-from cubeling.characters.control.command import CharacterCommand, SpeechIntent
+from cubeling.characters.control.command import CharacterCommand, ComingAct, SpeechIntent
 from cubeling.characters.face.expressions import EXPRESSIONS
 from cubeling.characters.model.character import Character
 from cubeling.characters.speech.speech import GestureSpan
@@ -82,6 +83,10 @@ class TaggedGestures:
         """Return a command that asks for the gestures of its speech too."""
         self._follow(command.speech, command.timestamp)
         now = command.timestamp
+        starts = (each.start for each in self._scheduled if each.behaviour.kind in HANDS)
+        following = min((start for start in starts if start > now), default=math.inf)
+        if following < math.inf and (command.coming is None or following < command.coming.start):
+            command = replace(command, coming=ComingAct(following))
         active = [each for each in self._scheduled if each.start <= now < each.end]
         if not active:
             return command

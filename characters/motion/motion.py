@@ -209,3 +209,14 @@ class StandingMotion(Motion, Protocol):
     def talk(self, shift: bool | None) -> None:
         """Shift the weight when a speech asks for it, or not until then; None in silence."""
         ...
+
+    def await_act(self, first: Pose | None, within: float) -> None:
+        """Go to the pose in which an act begins, be there in so many seconds, and wait.
+
+        Without a pose it may rest in any, as only arms and head will act.
+        """
+        ...
+
+    def go_on(self) -> None:
+        """Shift the weight again after `await_act`."""
+        ...

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from cubeling.characters.control.command import ActionIntent
+from cubeling.characters.control.command import ActionIntent, ComingAct
 from cubeling.characters.errors import CharacterError
 from cubeling.characters.face.affect_display import EMOTIONAL_WORDS
 from cubeling.characters.model.character import Character
@@ -10,6 +10,7 @@ from cubeling.characters.motion.blend import BlendSpace1D
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.phase import PhasedMotion, RetimedMotion
 from cubeling.characters.motion.state_machine import StateMachine
+from cubeling.characters.skeleton.pose import Pose
 
 WEIGHT_OF_SUFFIX = {"head": -1.0, "legs": 0.0, "tail": 1.0}
 """Weights that the suffixes of an action's clips stand for (thesis, section 5.3)."""
@@ -109,6 +110,12 @@ class Actions(Mapping[str, ActionMotion]):
             once = not any(clip.loop for clip in clips)
             self._made[action] = ActionMotion(action, space, once)
         return self._made[action]
+
+    def first_pose(self, coming: ComingAct | None) -> Pose | None:
+        """Return the pose in which what comes begins; None if it is no action."""
+        if coming is None or coming.action not in self:
+            return None
+        return self[coming.action].clip.poses[0]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

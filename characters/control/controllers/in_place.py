@@ -73,7 +73,7 @@ class InPlaceController:
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:
         """Advance by a time [s] under a command and return what is played."""
-        self._standing.update(command)
+        self._standing.update(command, self._actions.first_pose(command.coming), tempo)
         playing = elapsed * tempo if self._state == "idle" else elapsed
         now, self._time = self._time, self._time + playing
         self._act(command, elapsed, now)

@@ -90,7 +90,7 @@ class WalkController:
     ) -> ControllerFrame:
         """Advance by a time [s] under a command and return what is played."""
         # Also while it walks: when it stops it stands as it feels now.
-        self._standing.update(command)
+        self._standing.update(command, self._actions.first_pose(command.coming))
         action, self._finished = next_action(
             self._machine, self._actions, command.action, self._finished, self._time
         )

@@ -86,6 +86,7 @@ class IdleMotion:
         self._entered = 0  # of them, before time 0
         self._asked = 0.0  # for which time, the last one [s]
         self._talking = False  # shifts are those of a speech
+        self._rests = False  # shifts nowhere by itself
         self._lively = 1.0  # how much of the small variations shows
         self._calming = 0  # for how many frames they fade out at the end of a way; 0: not leading
 
@@ -151,7 +152,7 @@ class IdleMotion:
         self._rested = self._lively = 0.0
         self.go_on()
 
-    def lead_to(self, posture: Array, within: float = math.inf) -> float:
+    def lead_to(self, posture: Array, within: float = math.inf, haste: float = math.inf) -> float:
         """Go to a posture, (size,), by the shortest way and stay there; see `bridge`.
 
         Parameters
@@ -159,6 +160,8 @@ class IdleMotion:
         within
             When to be there at the latest, from the last time that was asked for [s]; at least two
             frames.
+        haste
+            How much faster than recorded it goes at most; then it comes later.
 
         Returns
         -------
@@ -166,20 +169,36 @@ class IdleMotion:
             When it is exactly there [s], from that time.
         """
         database, rate = self._database, self._database.rate
-        asked = self._asked * rate + self._entered
-        limit = _UNHURRIED
-        if math.isfinite(within):
-            limit = max(int(asked + within * rate + 1e-6) - self._made + 1, 1)
+        asked, limit = self._asked * rate + self._entered, self._frames_until(within)
         way = bridge(database, self._posture, posture, self._rng, limit - len(self._shift))
-        rows = hurry(np.stack([self._here, *self._shift, *way[1:]]), limit)
-        self._shift = deque(rows)
+        rows = self._hurried([*self._shift, *way[1:]], limit, haste)
         self._posture = RestingPosture(posture, nearest_balance(database, posture), 0.0, cut=True)
         self._calming = min(round(RAMP_S * rate), len(rows))
         return (self._made + len(rows) - 1 - asked) / rate
 
+    def rest(self, within: float = math.inf, haste: float = math.inf) -> None:
+        """End the shift under way, and begin none by itself; the parameters are of `lead_to`."""
+        if self._shift:
+            self._hurried([*self._shift], self._frames_until(within), haste)
+        self._rests = True
+
     def go_on(self) -> None:
-        """Go on after `lead_to`."""
-        self._calming = 0
+        """Go on after `lead_to` or `rest`."""
+        self._calming, self._rests = 0, False
+
+    def _frames_until(self, within: float) -> int:
+        """Return in how many frames from now a time is over, from the last one asked for [s]."""
+        if math.isinf(within):
+            return _UNHURRIED
+        rate = self._database.rate
+        asked = self._asked * rate + self._entered
+        return max(int(asked + within * rate + 1e-6) - self._made + 1, 1)
+
+    def _hurried(self, way: list[Array], limit: int, haste: float) -> Array:
+        """Take a way from here on, in so many frames if that is possible, and return its rows."""
+        rows = hurry(np.stack([self._here, *way]), max(limit, math.ceil(len(way) / haste)))
+        self._shift = deque(rows)
+        return rows
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
@@ -207,7 +226,7 @@ class IdleMotion:
             return self._shift.popleft()
         if self._calming:
             return self._posture.vector
-        waits = self._talking and self._rested < math.inf
+        waits = (self._talking or self._rests) and self._rested < math.inf
         if waits or self._rested < self.pause(self._posture, self._chance):
             self._rested += 1.0 / self.database.rate
             return self._posture.vector

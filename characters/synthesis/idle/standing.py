@@ -32,6 +32,11 @@ TRANSITION_S = 0.7
 """How long it goes over into an act and back [s]."""
 
 
+MAX_HASTE = 2.0
+"""How much faster than recorded a shift is made at most, for an act that begins soon: one that then
+comes too late goes over into the act."""
+
+
 @dataclass(frozen=True)
 class PlantedPaws:
     """Where the paws of a quadruped stand."""
@@ -75,7 +80,7 @@ class StandingPerson:
         self._acts = {clip.name: clip for clip in acts}
         self._machine = StateMachine({"": idle, **self._acts}, "", TRANSITION_S)
         self._rng = np.random.default_rng([seed, 1])
-        self._neutral, self._talking = True, False
+        self._neutral, self._talking, self._awaits = True, False, False
         self._next = ""  # the act that it goes to
         self._clock = self._last = 0.0  # played, and asked for last [s]
         self._change = self._rng.uniform(*PAUSE_S)  # when something else begins [s]
@@ -96,6 +101,21 @@ class StandingPerson:
         self.idle.talk(shift)
         self._talking = shift is not None
 
+    def await_act(self, first: Pose | None, within: float) -> None:
+        """Go to the pose in which an act begins; see `StandingMotion`."""
+        self._awaits = True
+        if self._next or self._machine.state:
+            self._go_on()
+        if first is None:
+            self.idle.rest(within, MAX_HASTE)
+        else:
+            self.idle.lead_to(self.idle.database.kind.vectors(first), within, MAX_HASTE)
+
+    def go_on(self) -> None:
+        """Shift the weight again after `await_act`."""
+        self._awaits = False
+        self.idle.go_on()
+
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]; one long before the latest goes on from where it is."""
         self._clock += max(time - self._last, 0.0)
@@ -109,7 +129,7 @@ class StandingPerson:
     @property
     def _free(self) -> bool:
         """Whether it may play acts."""
-        return self._neutral and not self._talking
+        return self._neutral and not self._talking and not self._awaits
 
     def _go_on(self) -> None:
         """Go to an act, then play it, then stand; who feels or speaks only stands."""

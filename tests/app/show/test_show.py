@@ -304,3 +304,23 @@ def test_a_dialogue_takes_over_in_mid_gesture_and_the_play_from_that_in_its_own(
     fastest = max(alone.max(), answered[out + 20 :].max())
     for at in (out, back):
         assert taken[at - 1 : at + 20].max() <= 1.2 * fastest
+
+
+def test_an_act_whose_time_is_known_is_told_ahead(hand, tmp_path):
+    path = show_of(
+        tmp_path,
+        '<say who="a" id="x">Hello there.</say><wait for="x" before="2"/>'
+        '<do who="b" for="1">nod</do><wait seconds="1.5"/><do who="a" for="1">wave</do>'
+        '<wait seconds="2"/>',
+    )
+    theatre = Theatre(hand, path)
+    told = [set(), set()]
+    while not theatre.over and hand.frames < 900:
+        for who, outcome in enumerate(theatre.frame()):
+            coming = outcome.command.coming
+            if coming is not None:
+                told[who].add((round(coming.start, 1), coming.action))
+    (nods,), (waves,) = theatre.times(1, "nod"), theatre.times(0, "wave")
+    for found, begins, name in ((told[1], nods, "nod"), (told[0], waves, "wave")):
+        ((start, action),) = found
+        assert (start, action) == (pytest.approx(begins, abs=0.15), name)
