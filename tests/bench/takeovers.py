@@ -1,6 +1,6 @@
 """Takeovers: how fast joints turn where one act replaces another.
 
-`python -m tests.bench.takeovers [CHARACTER …] [--worst N]`
+`python -m tests.bench.takeovers [CHARACTER …] [--worst N] [--pair FIRST:SECOND …]`
 
 Every kind of act is played alone, from idle to its end, and then every ordered pair of kinds: the
 second begins at several moments of the first, which is given up at once, as when a person speaks,
@@ -229,18 +229,20 @@ class Player:
         return Peak(float(speeds.max()), name, time)
 
 
-def measure(name: str, worst: int, console: Console) -> float:
-    """Print the table of one character and return its largest ratio."""
+def measure(name: str, worst: int, pairs: Sequence[str], console: Console) -> float:
+    """Print the table of one character, of some pairs or all, and return its largest ratio."""
     player = Player(load_to_play(name))
     alone, copies = {}, {}
+    asked = {tuple(pair.split(":")) for pair in pairs}
     for each in player.acts:
-        alone[each], copies[each] = player.alone(each)
+        if not asked or any(each in pair for pair in asked):
+            alone[each], copies[each] = player.alone(each)
     table = Table(f"{Path(name).name}: ratio", *player.acts)
     found: list[tuple[float, str, str, Peak]] = []
-    for first in player.acts:
+    for first in alone:
         row = []
         for second in player.acts:
-            if second == first:
+            if second == first or (asked and (first, second) not in asked):
                 row.append("")
                 continue
             peak = player.takeover(second, copies[first])
@@ -266,11 +268,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("characters", nargs="*")
     parser.add_argument("--worst", type=int, default=8, help="how many pairs are listed")
+    parser.add_argument("--pair", action="append", default=[], help="FIRST:SECOND instead of all")
     asked = parser.parse_args()
     strangers = [str(MODELS / name) for name in STRANGERS if (MODELS / name).exists()]
     console = Console(highlight=False, width=200)
     ratios = [
-        measure(name, asked.worst, console)
+        measure(name, asked.worst, asked.pair, console)
         for name in asked.characters or ["human", "vleo", *strangers]
     ]
     return int(max(ratios) > MAX_RATIO)

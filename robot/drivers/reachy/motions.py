@@ -70,6 +70,17 @@ MOODS = (
         },
     ),
     SineMotion(
+        "afraid",
+        3.0,
+        {
+            "head pitch": JointSine(-8, 2, 8),
+            "head roll": JointSine(-14, 2, 6),
+            "body yaw": JointSine(16, 2, 8),
+            "right antenna": JointSine(-80, 4, 9),
+            "left antenna": JointSine(80, 4, 9, 0.3),
+        },
+    ),
+    SineMotion(
         "surprised",
         4.0,
         {

@@ -45,3 +45,21 @@ def test_what_cannot_be_talked_is_one_line(cubeling, tmp_path, arguments, messag
     assert code == 2
     assert message in errors
     assert len(errors.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    "command", [("play", "talk"), ("show", "antigone"), ("serve",), ("talk", "--only-text")]
+)
+def test_a_model_is_named_in_every_command_that_plays(cubeling, command):
+    code, _, errors = cubeling(*command, "--model", "localhost")
+    assert code == 2
+    assert "--model localhost: give an address such as http" in errors
+    assert len(errors.splitlines()) == 1
+
+
+def test_a_model_that_nobody_would_ask_is_refused(cubeling):
+    asked = ("--record", "x.mcap", "--model", "http://127.0.0.1:9/v1")
+    code, _, errors = cubeling("show", "antigone", *asked)
+    assert code == 2
+    assert "nobody answers in" in errors
+    assert len(errors.splitlines()) == 1

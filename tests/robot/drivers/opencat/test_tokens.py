@@ -105,7 +105,7 @@ def test_settings_that_may_not_be_sent_are_refused_in_one_line(mood, tmp_path):
     ({"bittle": {"sounds": {"loud": [[5, 0]]}}}, "values"),
     ({"bittle": {"sounds": {"hi": [[5, 8]]}}}, "another name"),
     ({"bittle": {"moods": {"grim": {"posture": "sit"}}}}, "no mood"),
-    ({"bittle": {"moods": {"afraid": {"gestures": ["hi"]}}}}, "posture is missing"),
+    ({"bittle": {"moods": {"disgusted": {"gestures": ["hi"]}}}}, "posture is missing"),
     ({"bittle": {"sounds": {"a\nb": [[5, 8]]}}}, "printable"),
     ({"bittle": {"moods": 3}}, "table"),
     ({"bittle": 3}, "table"),
