@@ -203,12 +203,19 @@ class ReplayInputs:
     posed: PosedCharacter | None = None
     """The character; None to animate it."""
 
+    emotion: EmotionTarget | None = None
+    """The emotion that character and robot show; None for the scenario's."""
+
     further: Mapping[str, Any] = field(default_factory=dict)
     """The same of further players and characters, by their topics in a recording."""
 
     def command_of(self, name: str) -> CharacterCommand | None:
         """Return the recorded command of one of the cast, by its name as `Lines` have it."""
         return self.further.get(f"/cast/{name}/command") if name else self.command
+
+    def emotion_of(self, name: str) -> EmotionTarget | None:
+        """Return the recorded emotion of one of the cast."""
+        return self.further.get(f"/cast/{name}/emotion") if name else self.emotion
 
     def pose_of(self, name: str, character: Character) -> PosedCharacter | None:
         """Return its recorded pose, for today's character, which may have got more morphs."""

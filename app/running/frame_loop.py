@@ -181,5 +181,5 @@ class FrameLoop:
         self._index = frame.index
         # What came in with frames that were left out comes in with this one.
         self._recorded = both_asked(self._recorded, session.recorded_inputs(frame.timestamp))
-        if session.replay_inputs is not None:
-            self._replay = next(session.replay_inputs, None)
+        recorded = session.replay_inputs
+        self._replay = None if recorded is None else next(recorded, None)

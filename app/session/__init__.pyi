@@ -14,6 +14,7 @@ from cubeling.app.session.labels import (
     write_labels as write_labels,
 )
 from cubeling.app.session.options import (
+    START_STAGES as START_STAGES,
     SessionOptions as SessionOptions,
     check_stage as check_stage,
 )

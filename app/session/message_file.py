@@ -7,8 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, BinaryIO, Self
 
-from mcap.reader import McapReader, NonSeekingReader, SeekingReader
-from mcap.summary import Summary
+from mcap.reader import NonSeekingReader
 
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
@@ -22,6 +21,8 @@ from cubeling.app.session.encoding import (
 )
 from cubeling.app.session.file_records import READ_ERRORS, is_whole, metadata_of
 from cubeling.app.session.file_start import open_session_file
+from cubeling.mcap_index import McapIndex
+from cubeling.tracking import nanoseconds_of
 
 Message = tuple[str, float, bytes]
 """Topic, timestamp [s] and document of a message."""
@@ -75,28 +76,26 @@ class MessageFile:
         """Close the file; a second call does nothing."""
         self._file.close()
 
-    def messages(self, *topics: str) -> Iterator[Message]:
+    def messages(self, *topics: str, since: float = 0.0) -> Iterator[Message]:
         """Yield (topic, timestamp [s], bytes) in the order of the file, for some topics or all.
 
-        Of a file that was cut off, yield what can be read.
+        What was before a time is left out [s]. Of a file that was cut off, yield what can be read.
         """
-        with ExitStack() as closing:
+        start = nanoseconds_of(since)
+        with ExitStack() as closing, suppress(*READ_ERRORS):
             if self._is_whole:
-                # Its index leads straight to the chunks that hold a topic, wherever another reader
-                # of the same file has gone in between.
-                self._file.seek(0)
-                reader: McapReader = SeekingReader(self._file, True, record_size_limit=self._size)
+                found = self._index.messages(topics, since=start)
             else:
                 own = closing.enter_context(open_session_file(self.path))
                 own.seek(0)
                 reader = NonSeekingReader(own, True, record_size_limit=self._size)
-            with suppress(*READ_ERRORS):
-                for _, channel, message in reader.iter_messages(
-                    topics=topics or None, log_time_order=False
-                ):
-                    yield channel.topic, message.log_time / 1e9, message.data
+                found = reader.iter_messages(topics or None, start, log_time_order=False)
+            for _, channel, message in found:
+                yield channel.topic, message.log_time / 1e9, message.data
 
-    def decode_messages(self, kinds: Mapping[str, type[Any]]) -> Iterator[tuple[str, float, Any]]:
+    def decode_messages(
+        self, kinds: Mapping[str, type[Any]], since: float = 0.0
+    ) -> Iterator[tuple[str, float, Any]]:
         """Yield (topic, timestamp [s], message) as `messages` does, for the types of some topics.
 
         Raises
@@ -104,7 +103,7 @@ class MessageFile:
         AppError
             A message is not what a recorder writes.
         """
-        for topic, time, data in self.messages(*kinds):
+        for topic, time, data in self.messages(*kinds, since=since):
             with self.named_message(topic, time):
                 message = decode(kinds[topic], data)
             yield topic, time, message
@@ -135,11 +134,8 @@ class MessageFile:
             The file is damaged.
         """
         if self._is_whole:
-            try:
-                summary = self._index()[1]
-            except READ_ERRORS as error:
-                raise AppError(f"cannot read the session '{self.path}': {error}") from error
-            topics = {each.topic for each in summary.channels.values()}
+            with self._named_damage():
+                topics = {each.topic for each in self._index.summary.channels.values()}
         else:
             topics = {topic for topic, _, _ in self.messages()}
         return tuple(sorted(topic for topic in topics if message_type(topic) is not None))
@@ -156,27 +152,47 @@ class MessageFile:
             return self._indexed_frames()
         return self._readable_frames()
 
-    def _index(self) -> tuple[SeekingReader, Summary]:
-        """Return a reader of a whole session, and its index; raises one of `READ_ERRORS`."""
-        self._file.seek(0)
-        reader = SeekingReader(self._file, record_size_limit=self._size)
-        summary = reader.get_summary()
-        if summary is None:
-            raise ValueError("it has no index")
-        return reader, summary
+    def number_at(self, timestamp: float) -> int:
+        """Return the number of the first frame at a time or later [s]; raises AppError."""
+        with self._named_damage():
+            return self._index.number_at(IMAGE_TOPIC, nanoseconds_of(timestamp))
+
+    def frame_time(self, number: int) -> float:
+        """Return the timestamp of a frame by its number [s]; raises AppError."""
+        with self._named_damage():
+            for _, _, message in self._index.back_from(IMAGE_TOPIC, number):
+                return message.log_time / 1e9
+            raise ValueError("its index leads to no frame")
+
+    @contextmanager
+    def _named_damage(self) -> Iterator[None]:
+        try:
+            yield
+        except READ_ERRORS as error:
+            raise AppError(f"cannot read the session '{self.path}': {error}") from error
+
+    @cached_property
+    def _index(self) -> McapIndex:
+        """The index of a whole session; raises one of `READ_ERRORS`."""
+        return McapIndex(self._file)
 
     def _indexed_frames(self) -> tuple[int, float]:
         """Return how many camera frames a whole session has, and their duration [s]."""
-        try:
-            reader, summary = self._index()
+        with self._named_damage():
+            summary = self._index.summary
             if summary.statistics is None:
                 raise ValueError("it has no index")
             ids = {channel.topic: number for number, channel in summary.channels.items()}
             counts = summary.statistics.channel_message_counts
             frames = counts.get(ids.get(IMAGE_TOPIC, -1), 0)
-            return frames, _end(reader, last=True) - _end(reader, last=False) if frames else 0.0
-        except READ_ERRORS as error:
-            raise AppError(f"cannot read the session '{self.path}': {error}") from error
+            return frames, self._end(last=True) - self._end(last=False) if frames else 0.0
+
+    def _end(self, *, last: bool) -> float:
+        """Return the timestamp of the first or last camera frame [s], from one chunk or few."""
+        found = next(self._index.messages((IMAGE_TOPIC,), reverse=last), None)
+        if found is None:
+            raise ValueError("its index leads to no frame")
+        return found[2].log_time / 1e9
 
     def _readable_frames(self) -> tuple[int, float]:
         """Return the same of what can be read; refuse it if it is not to be salvaged."""
@@ -192,11 +208,3 @@ class MessageFile:
             f"the session '{self.path}' was cut off: {quantity(frames, 'frame')} ({seconds:.1f} s) "
             "can be played with --salvage"
         )
-
-
-def _end(reader: SeekingReader, *, last: bool) -> float:
-    """Return the timestamp of the first or last camera frame [s], from one chunk or few."""
-    found = next(reader.iter_messages(IMAGE_TOPIC, reverse=last), None)
-    if found is None:
-        raise ValueError("its index leads to no frame")
-    return found[2].log_time / 1e9

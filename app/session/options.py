@@ -10,7 +10,7 @@ from cubeling.app.pipeline.choices import REALISM_CHOICES, ROBOT_NAMES, checked_
 from cubeling.app.session.codecs import NO_VIDEO
 from cubeling.characters.speech import DEFAULT_PROFILE, SpeechProfile
 
-START_STAGES = ("camera", "state", "controls", "appearance", "command", "pose")
+START_STAGES = ("camera", "state", "controls", "appearance", "command", "pose", "emotion")
 """The stages that a replay can start from; each takes one channel more as recorded."""
 
 

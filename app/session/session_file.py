@@ -58,6 +58,7 @@ FIELD_OF_TOPIC = {
     APPEARANCE_TOPIC: "appearance",
     "/character/command": "command",
     "/character/pose": "posed",
+    "/robot/emotion": "emotion",
 }
 """The field of `ReplayInputs` for each channel, in the order of the stages after the camera."""
 
@@ -224,8 +225,8 @@ class SessionFile(MessageFile):
                     rate, sound = decode_sound_message(data)
                 yield (topic, time), rate, sound
 
-    def replay_inputs(self, start: str) -> Iterator[ReplayInputs]:
-        """Yield the recorded messages up to the stage `start`, for each frame.
+    def replay_inputs(self, start: str, since: float = 0.0) -> Iterator[ReplayInputs]:
+        """Yield the recorded messages up to the stage `start`, for each frame since a time [s].
 
         Raises
         ------
@@ -238,9 +239,9 @@ class SessionFile(MessageFile):
             return iter(())
         if not self.has(topics[-1]):
             raise AppError(f"'{self.path}' has no recorded channels to start from '{start}'")
-        return self._replay_inputs(topics)
+        return self._replay_inputs(topics, since)
 
-    def _replay_inputs(self, topics: tuple[str, ...]) -> Iterator[ReplayInputs]:
+    def _replay_inputs(self, topics: tuple[str, ...], since: float) -> Iterator[ReplayInputs]:
         parts = {topic.rpartition("/")[2] for topic in topics}
         further = [
             topic
@@ -249,7 +250,7 @@ class SessionFile(MessageFile):
         ]
         kinds = {topic: message_type(topic) or object for topic in (*topics, *further)}
         seen: Appearance | None = None
-        for _, found in groupby(self.decode_messages(kinds), key=itemgetter(1)):
+        for _, found in groupby(self.decode_messages(kinds, since), key=itemgetter(1)):
             of_frame = {topic: message for topic, _, message in found}
             if APPEARANCE_TOPIC in of_frame:
                 seen = of_frame[APPEARANCE_TOPIC] = of_frame[APPEARANCE_TOPIC].after(seen)

@@ -127,17 +127,9 @@ class StoredFrames(FrameSource):
             yield first
         yield from self._frames
 
-    def skip(self, count: int) -> None:
-        """Leave out the next frames of the iteration, if there are as many.
-
-        A kind of file that can be decoded from within does so; others decode what they leave out.
-        """
-        if count > 0 and self._first is not None:
-            self._first = None
-            count -= 1
-        for _ in range(count):
-            if next(self._frames, None) is None:
-                return
+    def restart(self, index: int) -> None:
+        """Return the frames again, from one on; none if there are not as many."""
+        raise NotImplementedError
 
     def close(self) -> None:
         """End the iteration. May be called again."""

@@ -1,7 +1,10 @@
 """The camera channels of an MCAP file, read forwards as far as the file is intact."""
 
+import itertools
 from collections.abc import Iterator
-from typing import IO
+from dataclasses import replace
+from functools import cached_property
+from typing import BinaryIO
 
 import numpy as np
 from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
@@ -9,10 +12,10 @@ from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from google.protobuf.message import DecodeError
 from mcap.exceptions import EndOfFile, InvalidMagic, RecordLengthLimitExceeded
-from mcap.reader import make_reader
 from mcap.records import Channel, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import MAGIC_SIZE, StreamReader
 
+from cubeling.mcap_index import IndexedMessage, McapIndex
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.sources.base import seconds_of
@@ -36,22 +39,49 @@ ENCODING_OF_FORMAT = {"jpeg": "jpeg", "jpg": "jpeg", "h264": "h264"}
 class CameraChannels:
     """Images and calibration of the camera, from an open MCAP file."""
 
-    def __init__(self, file: IO[bytes]) -> None:
+    def __init__(self, file: BinaryIO) -> None:
         self._file = file
         self.intrinsics: Intrinsics | None = None
         """The last calibration that `images` has read."""
 
-    def duration(self) -> float | None:
-        """Length of the recording [s]; None if the file has no summary."""
-        self._file.seek(0)
+    @cached_property
+    def _index(self) -> McapIndex | None:
+        """The file's index; None if it was cut off or is damaged: `images` reports where."""
         try:
-            summary = make_reader(self._file).get_summary()
-        except Exception:  # truncated or damaged: `images` reports where
+            return McapIndex(self._file)
+        except Exception:  # each kind of damage raises its own class
             return None
-        if summary is None or summary.statistics is None:
+
+    @property
+    def duration(self) -> float | None:
+        """Length of the recording [s]; None if the file has no index."""
+        times = None if self._index is None else self._index.summary.statistics
+        if times is None:
             return None
-        times = summary.statistics
         return seconds_of(times.message_end_time - times.message_start_time)
+
+    def images_from(self, number: int) -> Iterator[EncodedImage]:
+        """Return the images from a number on, after those that they build on, which are not seen.
+
+        Raises BrokenFileError as `images` does.
+        """
+        if self._index is None:
+            yield from _from(number, self.images())
+            return
+        try:
+            back = self._index.back_from(IMAGE_TOPIC, number)
+            wanted = first = next(back, None)
+            while first is not None and not _image_in(first).alone:
+                first = next(back, None)
+            if wanted is None or first is None:
+                return
+            for each in self._index.messages((IMAGE_TOPIC,), since=first[2].log_time):
+                seen = each[2].log_time >= wanted[2].log_time
+                yield replace(_image_in(each), seen=seen)
+        except BrokenFileError:
+            raise
+        except Exception as error:  # each kind of damage raises its own class
+            raise BrokenFileError("is damaged") from error
 
     def images(self) -> Iterator[EncodedImage]:
         """Return the images in the order of the file.
@@ -74,8 +104,7 @@ class CameraChannels:
             elif isinstance(record, Message) and record.channel_id in channels:
                 channel = channels[record.channel_id]
                 if channel.topic == IMAGE_TOPIC:
-                    schema = schemas.get(channel.schema_id)
-                    yield _image(record, schema.name if schema else "no schema")
+                    yield _image_in((schemas.get(channel.schema_id), channel, record))
                 elif channel.topic == CALIBRATION_TOPIC:
                     self.intrinsics = _intrinsics(record, deviation)
 
@@ -86,7 +115,7 @@ class _ExactReads:
     The reader of `mcap` mistakes a truncated record for a short one.
     """
 
-    def __init__(self, file: IO[bytes]) -> None:
+    def __init__(self, file: BinaryIO) -> None:
         self._file = file
 
     def read(self, length: int) -> bytes:
@@ -96,7 +125,7 @@ class _ExactReads:
         return data
 
 
-def _records(file: IO[bytes]) -> Iterator[McapRecord]:
+def _records(file: BinaryIO) -> Iterator[McapRecord]:
     size = file.seek(0, 2)
     file.seek(0)
     exact = _ExactReads(file)
@@ -118,11 +147,24 @@ def _records(file: IO[bytes]) -> Iterator[McapRecord]:
         yield record
 
 
-def _image(message: Message, schema: str) -> EncodedImage:
-    if schema not in IMAGE_SCHEMAS:
-        raise BrokenFileError(f"has images of schema {schema}, not {' or '.join(IMAGE_SCHEMAS)}")
+def _from(number: int, images: Iterator[EncodedImage]) -> Iterator[EncodedImage]:
+    """Leave out images before a number, except for those that it builds on, which are not seen."""
+    needed: list[EncodedImage] = []
+    for image in itertools.islice(images, number):
+        if image.alone:
+            needed.clear()
+        needed.append(replace(image, seen=False))
+    yield from needed
+    yield from images
+
+
+def _image_in(found: IndexedMessage) -> EncodedImage:
+    schema, _, message = found
+    name = schema.name if schema else "no schema"
+    if name not in IMAGE_SCHEMAS:
+        raise BrokenFileError(f"has images of schema {name}, not {' or '.join(IMAGE_SCHEMAS)}")
     try:
-        image = IMAGE_SCHEMAS[schema].FromString(message.data)
+        image = IMAGE_SCHEMAS[name].FromString(message.data)
     except DecodeError as error:
         raise BrokenFileError("is damaged") from error
     if image.format not in ENCODING_OF_FORMAT:

@@ -1,9 +1,7 @@
 """Frames from a recorded session: the same pixels that the tracker saw live."""
 
 import itertools
-from collections import deque
 from collections.abc import Generator, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -45,18 +43,17 @@ class SessionSource(StoredFrames):
         self._where = f"the session '{path}'"
         self._file = SESSION_FILE.open(path)
         try:
-            channels = CameraChannels(self._file)
-            self.duration = channels.duration()
-            self.rate, self._images = _nominal_rate(channels.images())
-            self._index = 0
-            self._ahead: deque[EncodedImage] = deque()
+            self._channels = CameraChannels(self._file)
+            self.duration = self._channels.duration
+            self.rate, images = _nominal_rate(self._channels.images())
             self.start(
-                self._decode_frames(), f"{self._where} holds no camera frame on {IMAGE_TOPIC}"
+                self._decode_frames(images, 0),
+                f"{self._where} holds no camera frame on {IMAGE_TOPIC}",
             )
         except BaseException:
             self._file.close()
             raise
-        found = channels.intrinsics
+        found = self._channels.intrinsics
         self.intrinsics = found.scale(self.size) if found and found.size != self.size else found
 
     def close(self) -> None:
@@ -64,39 +61,22 @@ class SessionSource(StoredFrames):
         super().close()
         self._file.close()
 
-    def skip(self, count: int) -> None:
-        """Leave out the next frames; decode only those that later ones build on."""
-        if count > 0 and self._first is not None:
-            self._first = None
-            count -= 1
-        try:
-            for image in itertools.islice(self._images, count):
-                if image.alone:
-                    self._ahead.clear()
-                self._ahead.append(replace(image, seen=False))
-                self._index += 1
-        except BrokenFileError:
-            pass  # the iteration ends with what is whole
+    def restart(self, index: int) -> None:
+        """Return the frames again, from one on; its place is found by the index of the file."""
+        super().close()
+        self._frames = self._decode_frames(self._channels.images_from(index), index)
 
-    def _decode_frames(self) -> Generator[Frame, None, None]:
+    def _decode_frames(
+        self, images: Iterator[EncodedImage], index: int
+    ) -> Generator[Frame, None, None]:
         timeline = Timeline()
         try:
-            for encoded, image in decode(self._images_to_decode()):
+            for encoded, image in decode(images):
                 stamp = timeline.stamp(encoded.timestamp)
-                index, self._index = self._index, self._index + 1
                 yield Frame(image, stamp, index, encoded.data, encoded.encoding)
+                index += 1
         except BrokenFileError as broken:
-            raise TrackingError(
-                f"{self._where} {broken}: {readable_frames(self._index)}"
-            ) from broken
-
-    def _images_to_decode(self) -> Iterator[EncodedImage]:
-        """Yield the images that are decoded only for those after them, then the others."""
-        while True:
-            image = self._ahead.popleft() if self._ahead else next(self._images, None)
-            if image is None:
-                return
-            yield image
+            raise TrackingError(f"{self._where} {broken}: {readable_frames(index)}") from broken
 
 
 def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> SessionSource:

@@ -1,5 +1,6 @@
 """Frames from a video file, with the timestamps of its container."""
 
+import itertools
 from collections.abc import Generator
 from pathlib import Path
 
@@ -41,16 +42,13 @@ class VideoSource(StoredFrames):
     def __init__(self, path: str | Path) -> None:
         self._path = Path(path)
         self._container = _open(self._path)
-        stream = self._container.streams.video[0]
-        # Frames and slices on all cores; without it FFmpeg decodes on one.
-        stream.thread_type = "AUTO"
         try:
             frames = self._decode_frames(self._container)
             self.start(frames, f"the video '{path}' has no frame that can be decoded")
         except BaseException:
             self._container.close()
             raise
-        self.rate = float(stream.average_rate or 30)
+        self.rate = float(self._container.streams.video[0].average_rate or 30)
         length = self._container.duration
         self.duration = None if length is None else length / av.time_base
 
@@ -58,6 +56,14 @@ class VideoSource(StoredFrames):
         """Close the file and end the iteration. May be called again."""
         super().close()
         self._container.close()
+
+    def restart(self, index: int) -> None:
+        """Return the frames again, from one on; those before it are decoded, too."""
+        self.close()
+        self._container = _open(self._path)
+        self._frames = self._decode_frames(self._container)
+        for _ in itertools.islice(self._frames, index):
+            pass
 
     def _decode_frames(self, container: InputContainer) -> Generator[Frame, None, None]:
         timeline, start, count = Timeline(), None, 0
@@ -98,4 +104,6 @@ def _open(path: Path) -> InputContainer:
     if not container.streams.video:
         container.close()
         raise TrackingError(f"'{path}' is not a video: it has no video stream")
+    # Frames and slices on all cores; without it FFmpeg decodes on one.
+    container.streams.video[0].thread_type = "AUTO"
     return container

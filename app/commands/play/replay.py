@@ -85,7 +85,7 @@ def replay(
         typer.Option(
             "--from",
             help="Take the recorded channels up to this one, and compute the others: camera "
-            "(compute all), state, controls, appearance, command or pose.",
+            "(compute all), state, controls, appearance, command, pose or emotion.",
             rich_help_panel=CHECK_GROUP,
         ),
     ] = "camera",

@@ -106,7 +106,9 @@ class Cast:
             name = member.name if number else LEAD
             command = recorded.command_of(name) or command
             member.perform(command, recorded.pose_of(name, member.character))
-            performances.append(member.performance(replace(decisions[number], command=command)))
+            emotion = recorded.emotion_of(name) or decisions[number].emotion
+            outcome = replace(decisions[number], command=command, emotion=emotion)
+            performances.append(member.performance(outcome))
         return tuple(performances)
 
     def _bodies(self, number: int) -> tuple[Obstacle, ...]:

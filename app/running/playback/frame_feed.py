@@ -14,7 +14,6 @@ from cubeling.tracking import (
     LiveFrames,
     StoredFrames,
     Timeline,
-    open_source,
 )
 
 SCREEN_UPDATE_INTERVAL_S = 0.05
@@ -72,11 +71,10 @@ class FrameFeed(Closeable):
         """Read a recording again, from a frame on."""
         session, options = self._session, self._session.options
         self._wait()
-        session.source.close()
-        session.source = open_source(options.source)
         assert isinstance(session.source, StoredFrames), "only recordings are read again"
-        session.source.skip(index)
+        session.source.restart(index)
         self._frames = iter(session.source)
+        session.replay_inputs = None
         if options.stage != "camera" and session.replayed is not None:
             replay_inputs = session.replayed.replay_inputs(options.stage)
             session.replay_inputs = islice(replay_inputs, index, None)

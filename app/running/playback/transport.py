@@ -7,9 +7,17 @@ from cubeling.app.running.opened_session import OpenedSession
 from cubeling.app.running.playback.frame_feed import FrameFeed
 from cubeling.app.running.playback.saved_states import SavedStates
 from cubeling.app.running.screens import is_seekable
+from cubeling.app.session import START_STAGES, SessionFile
 from cubeling.app.ui.playback.status import PlaybackMark, Position
 from cubeling.robot import Closeable
 from cubeling.tracking import Frame, Health, LiveFrames
+
+LONG_S = 600.0
+"""In a longer recording a seek does not process all frames on its way [s]."""
+
+MAX_PROCESSED_FRAMES = 30
+"""So many are processed on the way of a seek in a long recording: they take less than half a
+second."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +40,9 @@ class Transport(Closeable):
     In a recording the state after a seek is that of all frames before it: the pipeline goes on from
     a saved state, or from the start, and draws nothing until it is there. What a player asked of
     the scenario before that frame stays so, and what came later is forgotten.
+
+    In one that is longer than `LONG_S`, where that is far, it shows what was recorded from there
+    on, until the player asks for something else.
     """
 
     def __init__(self, session: OpenedSession) -> None:
@@ -43,6 +54,7 @@ class Transport(Closeable):
         self._marks: tuple[PlaybackMark, ...] | None = None
         self._start = session.options.start_s
         self._end = session.options.end_s or math.inf
+        self._shows_recorded = False
         self.seekable = is_seekable(session.source)
         """Whether the source is a recording that can be played from within."""
         self.paused = False
@@ -82,7 +94,9 @@ class Transport(Closeable):
         if self._first is None:
             self._first = frame.timestamp
             if self._start > 0.0:
-                self._target = _Target(self._first + self._start)
+                self._go(_Target(self._first + self._start))
+                if self._shows_recorded:
+                    return self.next()
         return None if frame.timestamp - self._first > self._end else frame
 
     def is_shown(self, frame: Frame) -> bool:
@@ -158,8 +172,10 @@ class Transport(Closeable):
         """
         if exchanged:
             self._states.clear()
+        if self._shows_recorded and (acted or exchanged):
+            self._shows_recorded, self._session.replay_inputs = False, None
         last = self._feed.last
-        if last is not None and self._saves_states:
+        if last is not None and self._saves_states and not self._shows_recorded:
             self._states.save(self._session.playground, last, acted=acted or exchanged)
 
     def follow_source(self) -> None:
@@ -204,17 +220,49 @@ class Transport(Closeable):
     def _go(self, target: _Target) -> None:
         """Seek a frame: from here, or from a saved state before it if that is better."""
         assert self._feed.last is not None, "something was played"
-        self.ended = False
+        self.ended, self._target = False, target
         saved = self._states.last_before(target.timestamp, target.index)
         index = 0 if saved is None else saved.index + 1
-        if target.is_reached(self._feed.last) or index > self._feed.last.index + 1:
+        here = self._feed.last.index + 1
+        goes_back = target.is_reached(self._feed.last) or index > here or self._shows_recorded
+        replayed = self._replayed
+        number = 0 if replayed is None else self._number_of(target, replayed)
+        if replayed is not None and number - (index if goes_back else here) > MAX_PROCESSED_FRAMES:
+            self._show_recorded(replayed, number)
+        elif goes_back:
+            self._shows_recorded = False
             self._feed.rewind(index)
             self._states.go_on_from(saved)
             if saved is None:
                 self._session.restart()
             else:
                 self._session.playground.restore(saved.checkpoint)
-        self._target = target
+
+    def _number_of(self, target: _Target, replayed: SessionFile) -> int:
+        """Return the number of the frame that is sought."""
+        at = replayed.number_at(target.timestamp)
+        return min(max(at, target.index), replayed.info.frames - 1)
+
+    @property
+    def _replayed(self) -> SessionFile | None:
+        """The session if it is shown as it was recorded where a seek is far; else None.
+
+        It must have every channel, and be played with the settings of then.
+        """
+        options, replayed = self._session.options, self._session.replayed
+        if replayed is None or self._length <= LONG_S or options.salvage:
+            return None
+        if options.stage != "camera" or options.metadata() != replayed.info.options.metadata():
+            return None
+        return replayed if replayed.has_channels else None
+
+    def _show_recorded(self, replayed: SessionFile, number: int) -> None:
+        """Go to a frame by the index of the file, and show what was recorded from there on."""
+        self._feed.rewind(number)
+        self._session.restart()
+        since = replayed.frame_time(number)
+        self._session.replay_inputs = replayed.replay_inputs(START_STAGES[-1], since)
+        self._shows_recorded = True
 
     def _arrive(self) -> None:
         self._target = None

@@ -12,6 +12,7 @@ from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running import runner
 from cubeling.app.running.opening import open_session
+from cubeling.app.running.playback import transport
 from cubeling.app.running.playback.frame_feed import MAX_WAITING_S
 from cubeling.app.running.playback.saved_states import FIRST_INTERVAL_S
 from cubeling.app.running.runner import run
@@ -119,6 +120,37 @@ def test_going_back_after_the_player_acted_is_as_short_and_shows_the_same(play, 
     again = player.messages()
     for step in player.steps[36:38] + player.steps[15:17]:
         assert again[step.frame.index] == [encode(each) for each in step.messages().values()]
+
+
+AS_THEN = {
+    "stage": "camera",
+    "cubes": ("companion",),
+    "own_motions_only": True,
+    "whole_limbs": False,
+}
+"""The settings with which the short session was recorded."""
+
+
+def test_in_a_long_recording_a_far_seek_shows_what_was_recorded(play, straight, monkeypatch):
+    monkeypatch.setattr(transport, "LONG_S", 1.0)
+    monkeypatch.setattr(transport, "MAX_PROCESSED_FRAMES", 5)
+    monkeypatch.setattr(runner, "PREVIEW_INTERVAL_S", 0.0)
+    script = (3, SeekTo(1.2)), (6, SeekTo(0.9)), (9, Inputs(clear=True)), (12, leave)
+    player = play(*script, **AS_THEN)
+    assert player.indices == [0, 1, 2, 36, 37, 38, *range(27, 33)]
+    assert not player.previews, "nothing is processed on the way"
+    for step in player.steps[:9]:
+        assert [encode(each) for each in step.messages().values()] == straight[step.frame.index]
+    poses = [encode(step.posed) for step in player.steps[9:]]
+    assert poses[-1] != straight[32][-2], "what the player asks for counts from there on"
+
+
+def test_a_long_recording_begins_within_as_it_was_recorded(play, straight, monkeypatch):
+    monkeypatch.setattr(transport, "LONG_S", 1.0)
+    monkeypatch.setattr(runner, "PREVIEW_INTERVAL_S", 0.0)
+    player = play((2, leave), start_s=1.2, **AS_THEN)
+    assert (player.indices, player.previews) == ([36, 37], [])
+    assert player.messages() == {index: straight[index] for index in (36, 37)}
 
 
 def test_single_frames_are_shown_while_it_is_paused(play, straight):

@@ -30,7 +30,7 @@ def test_what_follows_a_checkpoint_is_the_same_every_time(name):
     with open_source(str(bundled_session(name))) as source:
         assert isinstance(source, StoredFrames)
         playground = Playground(name, intrinsics_for(source.intrinsics, source.size))
-        source.skip(SKIPPED)
+        source.restart(SKIPPED)
         frames = list(itertools.islice(source, BEFORE + AFTER))
     messages(playground, frames[:BEFORE])
     checkpoint = playground.checkpoint()
@@ -52,7 +52,7 @@ def straight_and_after_a_seek():
     with open_source(str(bundled_session("companion"))) as source:
         assert isinstance(source, StoredFrames)
         intrinsics = intrinsics_for(source.intrinsics, source.size)
-        source.skip(SKIPPED)
+        source.restart(SKIPPED)
         frames = list(itertools.islice(source, BEFORE + AFTER))
     context = create_context()
 
