@@ -1,4 +1,4 @@
-from cubeling.app.session.acts import WizardAct as WizardAct
+from cubeling.app.session.acts import WizardAct as WizardAct, wizard_acts as wizard_acts
 from cubeling.app.session.codecs import NO_VIDEO as NO_VIDEO, check_codec as check_codec
 from cubeling.app.session.file_start import open_session_file as open_session_file
 from cubeling.app.session.frames import (

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
 from typing import Any, BinaryIO, Self
@@ -21,7 +21,7 @@ from cubeling.app.session.encoding import (
 )
 from cubeling.app.session.file_records import READ_ERRORS, is_whole, metadata_of
 from cubeling.app.session.file_start import open_session_file
-from cubeling.mcap_index import McapIndex
+from cubeling.mcap_index import IndexedMessage, McapIndex
 from cubeling.tracking import nanoseconds_of
 
 Message = tuple[str, float, bytes]
@@ -51,7 +51,8 @@ class MessageFile:
     ) -> None:
         self.path, self._salvage = path, salvage
         self._file = opened or open_session_file(path)
-        self._is_whole = is_whole(self._file)
+        self.is_whole = is_whole(self._file)
+        """Whether it was written to its end."""
         # No record is longer than the file: a damaged length takes no memory.
         self._size = self._file.seek(0, os.SEEK_END)
         self.metadata = metadata_of(self._file, self._size)
@@ -81,17 +82,23 @@ class MessageFile:
 
         What was before a time is left out [s]. Of a file that was cut off, yield what can be read.
         """
-        start = nanoseconds_of(since)
-        with ExitStack() as closing, suppress(*READ_ERRORS):
-            if self._is_whole:
-                found = self._index.messages(topics, since=start)
-            else:
-                own = closing.enter_context(open_session_file(self.path))
-                own.seek(0)
-                reader = NonSeekingReader(own, True, record_size_limit=self._size)
-                found = reader.iter_messages(topics or None, start, log_time_order=False)
-            for _, channel, message in found:
+        with suppress(*READ_ERRORS):
+            for _, channel, message in self.records(*topics, since=since):
                 yield channel.topic, message.log_time / 1e9, message.data
+
+    def records(self, *topics: str, since: float = 0.0) -> Iterator[IndexedMessage]:
+        """Yield schema, channel and message as `messages` does.
+
+        Raises one of `READ_ERRORS` where a file is damaged, or was cut off.
+        """
+        start = nanoseconds_of(since)
+        if self.is_whole:
+            yield from self._index.messages(topics, since=start)
+            return
+        with open_session_file(self.path) as own:
+            own.seek(0)
+            reader = NonSeekingReader(own, True, record_size_limit=self._size)
+            yield from reader.iter_messages(topics or None, starting_at=start, log_time_order=False)
 
     def decode_messages(
         self, kinds: Mapping[str, type[Any]], since: float = 0.0
@@ -133,8 +140,8 @@ class MessageFile:
         AppError
             The file is damaged.
         """
-        if self._is_whole:
-            with self._named_damage():
+        if self.is_whole:
+            with self.named_damage():
                 topics = {each.topic for each in self._index.summary.channels.values()}
         else:
             topics = {topic for topic, _, _ in self.messages()}
@@ -148,24 +155,25 @@ class MessageFile:
         AppError
             The file is damaged, or was cut off and is not to be salvaged.
         """
-        if self._is_whole and not self._salvage:
+        if self.is_whole and not self._salvage:
             return self._indexed_frames()
         return self._readable_frames()
 
     def number_at(self, timestamp: float) -> int:
         """Return the number of the first frame at a time or later [s]; raises AppError."""
-        with self._named_damage():
+        with self.named_damage():
             return self._index.number_at(IMAGE_TOPIC, nanoseconds_of(timestamp))
 
     def frame_time(self, number: int) -> float:
         """Return the timestamp of a frame by its number [s]; raises AppError."""
-        with self._named_damage():
+        with self.named_damage():
             for _, _, message in self._index.back_from(IMAGE_TOPIC, number):
                 return message.log_time / 1e9
             raise ValueError("its index leads to no frame")
 
     @contextmanager
-    def _named_damage(self) -> Iterator[None]:
+    def named_damage(self) -> Iterator[None]:
+        """Name the file that a block finds damaged."""
         try:
             yield
         except READ_ERRORS as error:
@@ -178,7 +186,7 @@ class MessageFile:
 
     def _indexed_frames(self) -> tuple[int, float]:
         """Return how many camera frames a whole session has, and their duration [s]."""
-        with self._named_damage():
+        with self.named_damage():
             summary = self._index.summary
             if summary.statistics is None:
                 raise ValueError("it has no index")

@@ -133,17 +133,21 @@ class SessionFile(MessageFile):
                 found.append((time, str(json.loads(data)["event"])))
         return found
 
+    @property
+    def first_time(self) -> float:
+        """Timestamp of the first frame [s]; 0 without one."""
+        return next(self.messages(IMAGE_TOPIC), ("", 0.0, b""))[1]
+
     @cached_property
     def marks(self) -> tuple[Mark, ...]:
         """The marked moments in the order of time, those of `labels` too; raises AppError."""
-        first = next(self.messages(IMAGE_TOPIC), ("", 0.0, b""))[1]
-        marks = (*recorded_marks(self.events, first), *self.labels.marks)
+        marks = (*recorded_marks(self.events, self.first_time), *self.labels.marks)
         return tuple(sorted(marks, key=lambda mark: mark.at_s))
 
     @property
     def wizard_acts(self) -> tuple[WizardAct, ...]:
         """What a wizard did, in the order of time; raises AppError."""
-        return wizard_acts(self.inputs, next(self.messages(IMAGE_TOPIC), ("", 0.0, b""))[1])
+        return wizard_acts(self.inputs, self.first_time)
 
     @cached_property
     def inputs(self) -> dict[float, RecordedInputs]:

@@ -31,8 +31,11 @@ from cubeling.app.commands.play.play_options import (
     RecordOption,
     RobotSettingsOption,
     RobotsOption,
+    RotateMbOption,
+    RotateMinutesOption,
     SoundsOption,
     codecs_of,
+    parts_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
@@ -65,6 +68,8 @@ def replay(
     robots: RobotsOption = None,
     robot_settings: RobotSettingsOption = None,
     record: RecordOption = None,
+    rotate_minutes: RotateMinutesOption = None,
+    rotate_mb: RotateMbOption = None,
     codec: CodecOption = "auto",
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
@@ -151,6 +156,7 @@ def replay(
             robot_settings=robot_settings,
             sounds=sounds,
             record=record,
+            **parts_of(rotate_minutes, rotate_mb),
             codec=record_codec,
             video_codec=video_codec,
             output=output,
@@ -190,6 +196,7 @@ def replay(
             robot_names=robot_names,
             robot_settings=robot_settings,
             record=record,
+            **parts_of(rotate_minutes, rotate_mb),
             codec=record_codec,
             video_codec=video_codec,
             output=output,

@@ -26,9 +26,12 @@ from cubeling.app.commands.play.play_options import (
     QualityOption,
     RecordOption,
     RobotsOption,
+    RotateMbOption,
+    RotateMinutesOption,
     codecs_of,
     describe,
     model_of,
+    parts_of,
 )
 from cubeling.app.commands.play.preference_options import DEFAULT_FILE, GivenPreferences
 from cubeling.app.errors import AppError
@@ -95,6 +98,8 @@ def serve(
     quality: QualityOption = AUTO_QUALITY,
     robots: RobotsOption = None,
     record: RecordOption = None,
+    rotate_minutes: RotateMinutesOption = None,
+    rotate_mb: RotateMbOption = None,
     codec: CodecOption = "auto",
     folder: FolderOption = None,
     token: Annotated[
@@ -147,6 +152,7 @@ def serve(
         second_robot=second_robot,
         robot_names=robot_names,
         record=record,
+        **parts_of(rotate_minutes, rotate_mb),
         codec=record_codec,
         folder=folder,
         patience_s=math.inf

@@ -17,8 +17,11 @@ from cubeling.app.commands.play.play_options import (
     ModelOption,
     OutputOption,
     RecordOption,
+    RotateMbOption,
+    RotateMinutesOption,
     SourceOption,
     model_of,
+    parts_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
@@ -41,6 +44,8 @@ def show(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     record: RecordOption = None,
+    rotate_minutes: RotateMinutesOption = None,
+    rotate_mb: RotateMbOption = None,
     voice: VoiceOption = None,
     model: ModelOption = None,
     model_name: ModelNameOption = "default",
@@ -71,6 +76,7 @@ def show(
         voice=voice,
         **model_of(model, model_name),
         record=record,
+        **parts_of(rotate_minutes, rotate_mb),
         output=output,
         overwrite=overwrite,
         pictures=output is not None or not written,

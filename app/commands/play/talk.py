@@ -25,7 +25,10 @@ from cubeling.app.commands.play.play_options import (
     PersonalityOption,
     RecordOption,
     RobotSettingsOption,
+    RotateMbOption,
+    RotateMinutesOption,
     model_of,
+    parts_of,
 )
 from cubeling.app.commands.play.preference_options import GivenPreferences, with_preferences
 from cubeling.app.errors import AppError
@@ -85,6 +88,8 @@ def talk(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     record: RecordOption = None,
+    rotate_minutes: RotateMinutesOption = None,
+    rotate_mb: RotateMbOption = None,
     personality: PersonalityOption = None,
     voice: VoiceOption = None,
     model: ModelOption = None,
@@ -135,6 +140,7 @@ def talk(
         robot=robot,
         robot_settings=robot_settings,
         record=record,
+        **parts_of(rotate_minutes, rotate_mb),
         output=output,
         overwrite=overwrite,
         pictures=output is not None or not written,

@@ -11,6 +11,7 @@ from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_input
 from cubeling.app.output_path import check_output, later_parts
+from cubeling.app.ui.literal_text import literal_text
 
 
 def join(
@@ -20,7 +21,8 @@ def join(
 ) -> None:
     """Write a recording in parts as one session, which replays like it.
 
-    The other parts are found beside the first one: day-002.mcap, day-003.mcap …
+    The other parts are found beside the first one: day-002.mcap, day-003.mcap … Of a part that was
+    cut off, as the program was killed, what can be read is taken.
 
     Example: cubeling join day.mcap -o whole.mcap
     """
@@ -30,6 +32,6 @@ def join(
         raise AppError("a part itself would be lost: name another file with --output")
     from cubeling.app.session.copying import join_parts
 
-    count = join_parts(first, output)
     console = Console(highlight=False, soft_wrap=True)
+    count = join_parts(first, output, lambda line: console.print(literal_text(line)))
     console.print(Text.assemble((str(output), "bold"), f" holds {quantity(count, 'part')}"))

@@ -13,6 +13,11 @@ from rich.text import Text
 
 from cubeling.app.command_group import CommandGroup
 from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
+from cubeling.app.commands.play.play_options import (
+    RotateMbOption,
+    RotateMinutesOption,
+    parts_of,
+)
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character
@@ -103,6 +108,8 @@ def run(
             rich_help_panel=PLAY_GROUP,
         ),
     ] = True,
+    rotate_minutes: RotateMinutesOption = None,
+    rotate_mb: RotateMbOption = None,
     *,
     instruments: GivenInstruments,
 ) -> None:
@@ -118,6 +125,7 @@ def run(
         raise AppError("who takes part needs a code: --participant P01, or --simulated 24")
     if page and window:
         raise AppError("questions are asked on a page or in a window: leave out one")
+    parts = parts_of(rotate_minutes, rotate_mb)
     if not output.parent.is_dir():
         raise AppError(f"there is no folder '{output.parent}' for the study '{output.name}'")
     from cubeling.app.workshop.study.participants.running import run_participant, run_simulated
@@ -147,7 +155,7 @@ def run(
         with ExitStack() as closing:
             pages = closing.enter_context(LocalPages())
             opened = closing.enter_context(instruments.open(loaded.wizard, pages))
-            setup = TaskSetup(source, robot, pictures, intrinsics, opened)
+            setup = TaskSetup(source, robot, pictures, intrinsics, opened, parts)
             desk = _open_desk(place, loaded, setup, file, console, pages, closing)
             log = study.begin(participant, datetime.now())  # once all is open: it counts as begun
             done = len(log.plan) - len(log.left)

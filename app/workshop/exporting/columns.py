@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from cubeling.app.pipeline.table.acts import Act
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.acts import WizardAct, act_words
-from cubeling.app.session.encoding import IMAGE_TOPIC, INPUTS_TOPIC
+from cubeling.app.session.encoding import INPUTS_TOPIC
 from cubeling.app.workshop.exporting.column import Cell, Column, Table, field, vector
 from cubeling.app.workshop.moods import read_robot_traces
 from cubeling.characters import CharacterCommand, PosedCharacter
@@ -89,7 +89,7 @@ def read_acts(session: SessionFile) -> Iterator[tuple[float, ToldAct]]:
 
 def read_marks(session: SessionFile) -> Iterator[tuple[float, Any]]:
     """Yield the marked moments, with their times [s]."""
-    first = next(session.messages(IMAGE_TOPIC), ("", 0.0, b""))[1]
+    first = session.first_time
     for mark in session.marks:
         yield first + mark.at_s, mark
 

@@ -12,6 +12,9 @@ from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.running.recording.recording import SessionRecording
 from cubeling.app.session import SessionFile, SessionOptions, messages, session_info
 from cubeling.app.session.encoding import IMAGE_TOPIC
+from cubeling.app.workshop.study.participants.live_task import judge
+from cubeling.app.workshop.study.protocols.goals import Goal
+from cubeling.app.workshop.study.protocols.protocol import StudyTask
 from cubeling.tracking import Intrinsics, open_source
 from tests.app.conftest import SHORT_FRAMES
 
@@ -68,6 +71,14 @@ def test_the_first_part_replays_exactly_and_the_others_name_it(cubeling, rotated
     assert cubeling("export", "all-002.mcap", "-o", "out")[0] == 0
 
 
+@pytest.mark.parametrize("command", ["play", "replay", "serve", "talk", "show", "study"])
+def test_every_command_that_records_goes_on_in_parts(cubeling, short_session, command):
+    code, out, _ = cubeling(command, *(["run"] if command == "study" else []), "--help")
+    assert code == 0
+    assert "--rotate-minutes" in out
+    assert "--rotate-mb" in out
+
+
 @pytest.mark.slow(reason="a session is recorded and replayed")
 def test_joined_parts_replay_exactly(cubeling, short_session):
     record(cubeling, short_session, "all.mcap", "--codec", "h264", "--rotate-minutes", MINUTES)
@@ -75,6 +86,21 @@ def test_joined_parts_replay_exactly(cubeling, short_session):
     assert (code, out) == (0, f"whole.mcap holds {PARTS} parts\n")
     assert session_info(Path("whole.mcap")).frames == SHORT_FRAMES
     assert cubeling("replay", "whole.mcap", "--check")[0] == 0
+    shout = StudyTask("shout", "", "companion", Goal("action", "shout"))
+    assert judge(Path("all.mcap"), shout) == judge(Path("whole.mcap"), shout)
+    for cut, words in ((PARTS, "could be read"), (2, "could be read, and from there on")):
+        part = Path(f"all-{cut:03}.mcap")
+        kept = part.read_bytes()
+        part.write_bytes(kept[: len(kept) // 2])
+        code, out, _ = cubeling("join", "all.mcap", "-o", f"cut{cut}.mcap")
+        part.write_bytes(kept)
+        assert (code, out.count("\n")) == (0, 2)
+        assert f"'{part}' was cut off: " in out
+        assert words in out
+        held = int(out.split("was cut off: ")[1].split()[0])
+        lost = session_info(part).frames - held
+        assert session_info(Path(f"cut{cut}.mcap")).frames == SHORT_FRAMES - lost
+        assert held < session_info(part).frames
     Path("all-002.mcap").unlink()
     code, _, err = cubeling("join", "all.mcap", "-o", "less.mcap")
     assert (code, err.count("\n")) == (2, 1)

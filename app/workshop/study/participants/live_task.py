@@ -1,15 +1,19 @@
 """A task of a study, played in a session that is recorded, and judged by its channels."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
 from datetime import datetime
+from itertools import chain
 from pathlib import Path
+from typing import Any
 
+from cubeling.app.output_path import later_parts
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
-from cubeling.app.session import SessionFile, SessionOptions
+from cubeling.app.session import SessionFile, SessionOptions, wizard_acts
 from cubeling.app.session.encoding import MESSAGE_TYPES
 from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
 from cubeling.app.workshop.study.protocols.goals import (
@@ -40,6 +44,9 @@ class TaskSetup:
     intrinsics: Path | None = None
     instruments: tuple[Instrument, ...] = ()
     """What else follows the tasks, such as a wizard's desk."""
+
+    parts: Mapping[str, Any] = field(default_factory=dict)
+    """When a recording goes on in another file: `part_s` and `part_bytes` of `SessionOptions`."""
 
 
 class LiveDesk:
@@ -88,6 +95,7 @@ class LiveDesk:
             intrinsics=setup.intrinsics,
             pictures=setup.pictures,
             record=record,
+            **setup.parts,
             participant=log.code,
             condition=step.condition,
         )
@@ -128,11 +136,18 @@ def play_task(
 
 
 def judge(session: Path, task: StudyTask) -> TaskResult:
-    """Return how a task ended, by the channels of its recording; raises AppError."""
+    """Return how a task ended, by the channels of its recording, in parts or not.
+
+    Raises AppError if it cannot be read.
+    """
     kinds = {topic: MESSAGE_TYPES[topic] for topic in GOAL_TOPICS}
-    with SessionFile(session) as file:
-        result = result_of(task.goal, task.limit_s, file.decode_messages(kinds))
-        return replace(result, acts=file.wizard_acts)
+    with ExitStack() as closing:
+        parts = [session, *later_parts(session)]
+        files = [closing.enter_context(SessionFile(part)) for part in parts]
+        messages = chain.from_iterable(file.decode_messages(kinds) for file in files)
+        result = result_of(task.goal, task.limit_s, messages)
+        inputs = {time: each for file in files for time, each in file.inputs.items()}
+        return replace(result, acts=wizard_acts(inputs, files[0].first_time))
 
 
 def free_recording(folder: Path, task: StudyTask, condition: str) -> Path:
