@@ -13,6 +13,9 @@ VMC_PORT = 39539
 """Where receivers of the VMC protocol listen unless they are told otherwise."""
 
 
+MAX_PORT = 65535
+
+
 @dataclass(frozen=True)
 class UdpAddress:
     """A host and a port."""
@@ -42,7 +45,7 @@ class UdpAddress:
         elif port is not None and not (colon and number.isdecimal()):
             host, number = text, str(port)
         host = host.removeprefix("[").removesuffix("]")
-        if not host or "://" in text or not number.isdecimal() or not 0 <= int(number) <= 65535:
+        if not host or "://" in text or not number.isdecimal() or not 0 <= int(number) <= MAX_PORT:
             raise AppError(f"{option} {text}: give a port, or HOST:PORT as in {LOOPBACK}:9000")
         return cls(host, int(number))
 

@@ -48,7 +48,7 @@ class InstrumentOptions:
     """Where to take acts by OSC."""
 
     vmc: str | None = None
-    """Where to send the character by the VMC protocol."""
+    """Where to send the cast by the VMC protocol: an address, or one for each, between commas."""
 
     lsl: bool = False
     """Whether to offer streams by LSL."""
@@ -68,13 +68,14 @@ class InstrumentOptions:
     def __post_init__(self) -> None:
         if self.wizard_file is not None and not self.wizard:
             raise AppError("--wizard-file has the buttons of --wizard: give that too")
-        for option, text, port in (
-            ("--osc", self.osc, None),
-            ("--osc-in", self.osc_in, None),
-            ("--vmc", self.vmc, VMC_PORT),
+        for option, texts, port in (
+            ("--osc", [self.osc], None),
+            ("--osc-in", [self.osc_in], None),
+            ("--vmc", [None] if self.vmc is None else self.vmc.split(","), VMC_PORT),
         ):
-            if text is not None:
-                UdpAddress.of(text, option, port)
+            for text in texts:
+                if text is not None:
+                    UdpAddress.of(text, option, port)
         if self.lsl_scope not in LSL_SCOPES:
             raise AppError(f"--lsl-scope is one of {', '.join(LSL_SCOPES)}, not {self.lsl_scope}")
 
@@ -110,8 +111,8 @@ def open_instruments(
         if options.vmc is not None:
             from cubeling.app.bridges.vmc import VmcOut
 
-            target = UdpAddress.of(options.vmc, "--vmc", VMC_PORT)
-            opened.append(closing.enter_context(VmcOut(target)))
+            targets = [UdpAddress.of(each, "--vmc", VMC_PORT) for each in options.vmc.split(",")]
+            opened.append(closing.enter_context(VmcOut(*targets)))
         if options.lsl or options.lsl_in is not None:
             configure_lsl(options.lsl_scope)
             from cubeling.app.bridges.lsl import LslIn, LslOut

@@ -6,8 +6,9 @@ https://protocol.vmc.info, version 2.x, of a performer: OSC over UDP, in Unity's
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
-from cubeling.app.bridges.addresses import UdpAddress
+from cubeling.app.bridges.addresses import MAX_PORT, UdpAddress
 from cubeling.app.bridges.osc_socket import OscMessage, OscSender, Value
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import Inputs
@@ -40,40 +41,71 @@ UNITY_THUMBS = {"Metacarpal": "Proximal", "Proximal": "Intermediate", "Distal": 
 
 
 class VmcOut(Instrument):
-    """Sends the first character of a session.
+    """Sends the people of a cast, each to an address of its own: receivers show one each.
 
-    Raises AppError at the beginning if that is no person.
+    Parameters
+    ----------
+    addresses
+        Those of the characters in the order of the cast. Further ones follow on the next ports.
+
+    Raises AppError at the beginning if none of the cast is a person.
     """
 
-    def __init__(self, address: UdpAddress) -> None:
-        self._sender = OscSender(address)
-        self._character: Character | None = None
-        self._body: VmcBody | None = None
+    def __init__(self, *addresses: UdpAddress) -> None:
+        self._addresses = addresses
+        self._senders = {each: OscSender(each) for each in addresses}
+        self._sent: list[tuple[Character, VmcBody | None]] = []
         self._first: float | None = None
 
+    def address_of(self, place: int) -> UdpAddress:
+        """Return where a character is sent, by its place in the cast; raises AppError."""
+        if place < len(self._addresses):
+            return self._addresses[place]
+        last = self._addresses[-1]
+        port = last.port + place + 1 - len(self._addresses)
+        if port > MAX_PORT:
+            raise AppError(f"--vmc: there is no port {port} for character {place + 1}")
+        return replace(last, port=port)
+
     def begin(self, cast: Sequence[Character]) -> None:
-        """Measure the character's bones; raises AppError if it is no person."""
-        try:
-            self._character, self._body = cast[0], VmcBody(cast[0])
-        except CharacterError as error:
-            raise AppError(f"--vmc: {error}; choose one with --character") from None
+        """Measure the bones of all; raises AppError if nobody is a person."""
+        problem = self._take(cast)
+        if problem is not None:
+            raise AppError(f"--vmc: {problem}; choose one with --character") from None
 
     def follow(self, step: Step, cast: Sequence[Character], taken: float) -> Inputs:
-        """Send the character's bones and face; a character that is no person stands still."""
-        if cast[0] is not self._character:  # the player has chosen another one
-            try:
-                self.begin(cast)
-            except AppError:
-                self._character, self._body = cast[0], None
-        if self._body is not None:
-            now = step.posed.timestamp
-            self._first = now if self._first is None else self._first
-            self._sender.send(self._body.messages(step.posed, now - self._first))
+        """Send bones and faces; who is no person stands still."""
+        known = [character for character, _ in self._sent]
+        if any(one is not other for one, other in zip(known, cast, strict=True)):
+            self._take(cast)  # the player has chosen another one
+        for place, ((_, body), performance) in enumerate(zip(self._sent, step.cast, strict=True)):
+            if body is not None:
+                posed = performance.posed
+                self._first = posed.timestamp if self._first is None else self._first
+                sender = self._senders[self.address_of(place)]
+                sender.send(body.messages(posed, posed.timestamp - self._first))
         return Inputs()
 
+    def _take(self, cast: Sequence[Character]) -> CharacterError | None:
+        """Measure a cast; return why nobody can be sent, or None."""
+        problem, self._sent = None, []
+        for place, character in enumerate(cast):
+            body = None
+            try:
+                body = VmcBody(character)
+            except CharacterError as error:
+                problem = problem or error
+            else:
+                address = self.address_of(place)
+                if address not in self._senders:
+                    self._senders[address] = OscSender(address)
+            self._sent.append((character, body))
+        return problem if all(body is None for _, body in self._sent) else None
+
     def close(self) -> None:
-        """Close the socket; a second call does nothing."""
-        self._sender.close()
+        """Close the sockets; a second call does nothing."""
+        for sender in self._senders.values():
+            sender.close()
 
 
 class VmcBody:

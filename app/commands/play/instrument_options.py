@@ -59,7 +59,7 @@ INSTRUMENTS: Mapping[str, tuple[Any, Any]] = {
             str | None,
             "--vmc",
             "Show the character in Unity, Blender, VSeeFace …, by the VMC protocol, at HOST, PORT "
-            "or HOST:PORT.",
+            "or HOST:PORT; others of a cast at the next ports, or after commas.",
         ),
         None,
     ),

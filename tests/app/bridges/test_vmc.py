@@ -3,6 +3,7 @@
 import asyncio
 import socket
 import subprocess
+from contextlib import ExitStack
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -47,9 +48,9 @@ def human():
     return Character.load("human")
 
 
-def step_of(posed: PosedCharacter) -> Any:
+def step_of(*cast: PosedCharacter) -> Any:
     """Return what is read of a step."""
-    return SimpleNamespace(posed=posed)
+    return SimpleNamespace(cast=[SimpleNamespace(posed=each) for each in cast])
 
 
 def posed(character, pose, place=None):
@@ -175,6 +176,40 @@ def test_another_character_in_play_is_followed_if_it_can_be(human):
         out.begin([human])
         for who in (vleo, human):
             out.follow(step_of(posed(who, who.skeleton.rest)), [who], 0.0)
+
+
+def test_each_person_of_a_cast_is_sent_to_an_address_of_its_own(human):
+    with ExitStack() as closing:
+        listeners = [closing.enter_context(socket.socket(type=socket.SOCK_DGRAM)) for _ in "ab"]
+        for each in listeners:
+            each.bind(("127.0.0.1", 0))
+            each.settimeout(5.0)
+        first, second = (UdpAddress("127.0.0.1", each.getsockname()[1]) for each in listeners)
+        # Vleo's address lies between those of the two people, and nothing is sent there.
+        out = closing.enter_context(VmcOut(first, UdpAddress("127.0.0.1", 9), second))
+        cast = [human, Character.load("vleo"), human]
+        out.begin(cast)
+        poses = human.clips["wave"].poses[0], cast[1].skeleton.rest, human.clips["cheer"].poses[9]
+        step = step_of(*(posed(who, pose) for who, pose in zip(cast, poses, strict=True)))
+        out.follow(step, cast, 0.0)
+        for listener, pose in zip(listeners, (poses[0], poses[2]), strict=True):
+            receiver, own = VmcReceiver(), VmcReceiver()
+            while len(receiver.bones) < len(TPoseBones(human).parts):
+                receiver.take(listener.recv(65536))
+            for each in VmcBody(human).messages(posed(human, pose), 0.0):
+                if each.address == "/VMC/Ext/Bone/Pos":
+                    own.bones[each.arguments[0]] = np.array(each.arguments[1:])
+            for name, numbers in own.bones.items():
+                np.testing.assert_allclose(receiver.bones[name], numbers, atol=1e-6)
+
+
+def test_further_characters_go_to_the_next_ports():
+    with VmcOut(UdpAddress("127.0.0.1", 39539), UdpAddress("127.0.0.1", 65535)) as out:
+        assert [out.address_of(place).port for place in range(2)] == [39539, 65535]
+        with pytest.raises(AppError, match="no port 65536 for character 3"):
+            out.address_of(2)
+    with VmcOut(UdpAddress("127.0.0.1", 39539)) as out:
+        assert out.address_of(2) == UdpAddress("127.0.0.1", 39541)
 
 
 @pytest.mark.parametrize(

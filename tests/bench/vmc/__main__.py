@@ -135,7 +135,7 @@ async def distances(
     for frame in np.linspace(0, len(clip) - 1, FRAMES).astype(int).tolist():
         pose = clip.poses[frame]
         posed = PosedCharacter(pose, np.eye(4), True, clip.name, 0.0, 0.0, 0.0, frame / clip.rate)
-        out.follow(SimpleNamespace(posed=posed), [who], 0.0)  # type: ignore[arg-type]
+        out.follow(SimpleNamespace(cast=[SimpleNamespace(posed=posed)]), [who], 0.0)  # type: ignore[arg-type]
         shown = await tab.run("take()")
         places = ours.poses[frame].globals(skeleton)[:, :3, 3]
         hips = places[anatomy.joints["hips"]]
