@@ -190,13 +190,14 @@ def _open_desk(
             raise AppError("there is no display here for a window: leave out --window, or --page")
         from cubeling.app.workshop.study.window.window_desk import WindowDesk
 
-        return closing.enter_context(WindowDesk(protocol, setup, folder))
+        desk = WindowDesk(protocol, setup, folder, say=lambda line: console.print(Text(line)))
+        return closing.enter_context(desk)
     if place == "page":
         from cubeling.app.workshop.study.participants.page_desk import PageDesk
 
-        desk = PageDesk(protocol, setup, folder, pages)
-        console.print(Text.assemble("The participant's page: ", (desk.address, "cyan")))
-        return desk
+        page = PageDesk(protocol, setup, folder, pages)
+        console.print(Text.assemble("The participant's page: ", (page.address, "cyan")))
+        return page
     from cubeling.app.workshop.study.participants.terminal import TerminalDesk
 
     return TerminalDesk(protocol, setup, console)

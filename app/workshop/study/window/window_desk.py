@@ -7,6 +7,8 @@ from contextlib import contextmanager, suppress
 from datetime import timedelta
 from pathlib import Path
 
+import numpy as np
+
 from cubeling.app.errors import AppError
 from cubeling.app.ui.window.surface import WindowSurface
 from cubeling.app.workshop.study.participants.live_task import LiveDesk, TaskSetup
@@ -21,6 +23,7 @@ from cubeling.app.workshop.study.protocols.plan import PlannedStep
 from cubeling.app.workshop.study.protocols.protocol import Protocol
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
 from cubeling.app.workshop.study.window.fields import SHEET_HEIGHT, SHEET_WIDTH, Picture
+from cubeling.app.workshop.study.window.film_sound import FilmSounds, sound_of
 from cubeling.app.workshop.study.window.sheet import Sheet, empty_sheet
 from cubeling.tracking import Frame, open_source
 
@@ -125,6 +128,8 @@ class WindowDesk(LiveDesk):
         See `LiveDesk`.
     opened
         Opens the window: again after each task, which has a window of its own.
+    say
+        Called with lines for the experimenter.
     """
 
     def __init__(
@@ -133,9 +138,10 @@ class WindowDesk(LiveDesk):
         setup: TaskSetup,
         folder: Path,
         opened: Callable[[], QuestionWindow] = QuestionWindow,
+        say: Callable[[str], None] = lambda line: None,
     ) -> None:
         super().__init__(protocol, setup, folder)
-        self._open = opened
+        self._open, self._sounds = opened, FilmSounds(say)
         self._window: QuestionWindow | None = opened()
 
     def __enter__(self) -> "WindowDesk":
@@ -147,6 +153,7 @@ class WindowDesk(LiveDesk):
     def close(self) -> None:
         """Close the window; a second call does nothing."""
         self.give_way()
+        self._sounds.close()
 
     def tell(self, title: str, text: str) -> None:
         """Show a text until the participant goes on."""
@@ -182,25 +189,34 @@ class WindowDesk(LiveDesk):
         scale = window.scale
         # The onset is that of a picture that is ready: nothing is decoded while it is waited for.
         pictures = [each.picture for each in shown]
+        self._sounds.prepare([each.sound for each in shown])
         if files and self._protocol.light_patch:
             window.show_empty()
             time.sleep(DARK_S)
         began = window.show_sheet(sheet, pictures)
+        for place, each in enumerate(shown):
+            self._sounds.play(place, len(shown), each.sound)
         since = time.monotonic() - began
         self.onset = self.now() - timedelta(seconds=since) if files else None
-        while not sheet.done:
-            window.poll()
-            if window.closed:
-                raise KeyboardInterrupt
-            elapsed = time.monotonic() - began
-            moved = [each.follow(elapsed) for each in shown]
-            if any(moved) or sheet.changed or window.scale != scale:
-                scale = window.scale
-                window.show_sheet(sheet, [each.picture for each in shown])
-            else:
-                time.sleep(POLL_S)
-        for each in shown:
-            each.close()
+        try:
+            while not sheet.done:
+                window.poll()
+                if window.closed:
+                    raise KeyboardInterrupt
+                elapsed = time.monotonic() - began
+                moved = [each.follow(elapsed) for each in shown]
+                for place, each in enumerate(shown):
+                    if each.begins_again:
+                        self._sounds.play(place, len(shown), each.sound)
+                if any(moved) or sheet.changed or window.scale != scale:
+                    scale = window.scale
+                    window.show_sheet(sheet, [each.picture for each in shown])
+                else:
+                    time.sleep(POLL_S)
+        finally:
+            self._sounds.hush(len(shown))
+            for each in shown:
+                each.close()
 
 
 class _Shown:
@@ -210,6 +226,10 @@ class _Shown:
         self._file, self._frames = file, None if not is_film(file) else self._read(file)
         self._next: Frame | None = None
         self._first = self._offset = 0.0
+        self.sound = np.zeros(0) if self._frames is None else sound_of(file)
+        """What is heard with it, (n,) at `SAMPLE_RATE`."""
+        self.begins_again = False
+        """Whether a film has begun again since it was followed last."""
         if self._frames is None:
             self.picture = read_picture(file)
             """What is shown now, (height, width, 3) BGR."""
@@ -227,9 +247,9 @@ class _Shown:
 
     def follow(self, elapsed: float) -> bool:
         """Take the picture of a time since the onset [s]; return whether it is another one."""
+        moved = self.begins_again = False
         if self._frames is None:
             return False
-        moved = False
         while (
             self._next is not None and self._next.timestamp - self._first <= elapsed - self._offset
         ):
@@ -237,7 +257,7 @@ class _Shown:
             self._next = next(self._frames, None)
         if self._next is None:  # again from its beginning, after its last picture was seen
             self._frames.close()  # type: ignore[attr-defined] # it is a generator
-            self._frames, self._offset = self._read(self._file), elapsed
+            self._frames, self._offset, self.begins_again = self._read(self._file), elapsed, True
             with suppress(StopIteration):
                 self._next = next(self._frames)
         return moved
