@@ -34,6 +34,12 @@ QUIET_S = 5.0
 PICTURE_WIDTH_PX = 480
 """Of the picture of the session on the desk."""
 
+TO_CUBE = "cube"
+"""The name of "go" that leads to the cube, wherever it is now."""
+
+BESIDE_CUBE_M = 0.1
+"""How far from the middle of the cube a character stands that was sent to it [m]."""
+
 MAX_WAITING = 64
 """Acts that wait for the next frame; of more, the last are left out."""
 
@@ -49,7 +55,7 @@ class DeskRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Intensity of an action, −1…1."""
 
     place: tuple[float, float] | None = None
-    """Where to go, (x, z) [m]; None releases it."""
+    """Where to go, (x, z) [m]; None releases it, or leads to the cube with the name `TO_CUBE`."""
 
     number: int = 0
     """The act that was an error."""
@@ -161,8 +167,12 @@ class WizardDesk(Instrument):
                 return str(error)
             if not 0 < len(request.name.strip()) <= MAX_SAID_CHARS:
                 return f"what is said has 1 to {MAX_SAID_CHARS} characters"
-        if request.do == "go" and max(map(abs, request.place or (0.0,))) > MAX_PLACE_M:
-            return "this place is off the table"
+        place = request.place
+        if request.do == "go":
+            if request.name == TO_CUBE and (place := self._beside_cube()) is None:
+                return "the cube is not seen"
+            if max(map(abs, place or (0.0,))) > MAX_PLACE_M:
+                return "this place is off the table"
         self._count += 1
         delay = round(now - self._cue_at, 4) if self._cue else None
         act = Act(
@@ -170,13 +180,24 @@ class WizardDesk(Instrument):
             request.name,
             request.weight,
             emotion_of(request.name) if request.do == "emotion" else None,
-            request.place,
+            place,
             ActNote(self._count, self._cue, delay),
         )
         self._waiting.append(act)
         told = {"number": self._count, "kind": act.kind, "name": act_words(act)}
         self._acts.append({**told, "cue": self._cue, "delay_s": delay, "undone": False})
         return ""
+
+    def _beside_cube(self) -> tuple[float, float] | None:
+        """Return a place beside the cube, on the character's side; None while it is not seen."""
+        if self._doing.get("cube") is None:
+            return None
+        cube, away = np.array(self._doing["cube"]), np.array(self._doing["character"])
+        away -= cube
+        apart = float(np.hypot(*away))
+        side = away / apart if apart > 0.0 else np.array([0.0, 1.0])
+        x, z = cube + BESIDE_CUBE_M * side
+        return round(float(x), 3), round(float(z), 3)
 
     def _mark(self, name: str, now: float) -> None:
         self._count += 1

@@ -174,6 +174,7 @@ def test_an_event_that_the_plan_names_is_a_cue_when_it_happens(desk, clock):
         (DeskRequest("say", "x" * 501), "1 to 500"),
         (DeskRequest("say", '<begin_gesture id="a" anim="wave"/>Hi'), "never ends"),
         (DeskRequest("go", place=(3.0, 0.0)), "off the table"),
+        (DeskRequest("go", "cube"), "the cube is not seen"),
         (DeskRequest("undo", number=7), "not there"),
     ],
 )
@@ -182,6 +183,18 @@ def test_what_cannot_be_done_is_told_in_one_line(desk, clock, request_, words):
     assert words in desk.ask(request_)
     clock.now += QUIET_S + 1.0
     assert desk.ask(DeskRequest("say", "Hello!")) == "nothing is played now"
+
+
+def test_to_the_cube_leads_beside_it_wherever_it_is(desk, clock):
+    desk._followed = clock.now
+    for cube, place in (([0.0, 0.0], (-0.06, 0.08)), ([0.3, -0.4], (0.234, -0.325))):
+        desk._doing = {
+            "cube": cube,
+            "character": [-0.3, 0.4] if cube == [0.0, 0.0] else [0.0, -0.06],
+        }
+        assert desk.ask(DeskRequest("go", "cube")) == ""
+        assert desk._waiting[-1].place == pytest.approx(place, abs=0.001)
+        assert desk._waiting[-1].note.number == len(desk._waiting)
 
 
 def test_the_page_is_for_who_knows_its_address_and_says_what_is_wrong(desk, clock):

@@ -101,6 +101,10 @@ find("table").onclick = event => {
   const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(find("table").getScreenCTM().inverse());
   ask({ do: "go", place: [at.x / 100, at.y / 100] });
 };
+find("tocube").onclick = find("cubemark").onclick = event => {
+  event.stopPropagation();
+  ask({ do: "go", name: "cube" });
+};
 find("stay").onclick = () => ask({ do: "go" });
 
 document.onkeydown = event => {

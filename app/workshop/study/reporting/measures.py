@@ -68,31 +68,38 @@ def wizard_parts(data: StudyData) -> Iterator[str]:
     yield heading("The wizard")
     wrong = sum(row["undone"] for row in rows)
     yield paragraph(
-        f"{quantity(len(rows), 'act')}; taken back as errors: {wrong}. Delays are "
-        "from the cue to the act at the desk, without errors."
+        f"{quantity(len(rows), 'act')}; taken back as errors: {wrong} "
+        f"({percent(wrong / len(rows))}). Delays are from the cue to the act at the desk, without "
+        "the acts that were errors, and with them."
     )
     lines = []
     for task, own in _by(rows, "task").items():
         for condition, acts in _by(own, "condition").items():
             errors = sum(row["undone"] for row in acts)
             low, high = share_interval(errors, len(acts))
-            late = [
-                row["delay_s"] for row in acts if row["delay_s"] is not None and not row["undone"]
-            ]
-            delays = ["–"] * 3
-            if late:
-                found = describe(late)
-                delays = [figure(found.mean), figure(found.deviation), figure(max(late))]
             share = f"{errors} ({percent(errors / len(acts), 0)})"
             bounds = f"[{percent(low, 0)}, {percent(high, 0)}]"
-            cells = (f"{len(acts)}", share, bounds, f"{len(late)}", *delays)
-            lines.append((task, _condition(condition), *cells))
+            cued = [row for row in acts if row["delay_s"] is not None]
+            meant = _delays([row for row in cued if not row["undone"]])
+            lines.append(
+                (task, _condition(condition), f"{len(acts)}", share, bounds, meant, _delays(cued))
+            )
     columns = (
         *("task", "condition", "acts", "errors", "95 % interval"),
-        *("cued", "mean delay [s]", "SD", "longest"),
+        *("delay [s]: mean, SD, longest, n", "with errors"),
     )
     note = "Acts of one wizard are not independent: the intervals are too narrow."
     yield table(ReportTable("Acts of the wizard", columns, tuple(lines), note))
+
+
+def _delays(rows: Sequence[Row]) -> str:
+    """Return mean, deviation, longest and number of some acts' delays."""
+    if not rows:
+        return "–"
+    late = [row["delay_s"] for row in rows]
+    found = describe(late)
+    spread = f"{figure(found.mean)}, {figure(found.deviation)}, {figure(max(late))}"
+    return f"{spread}, {len(late)}"
 
 
 def scale_parts(data: StudyData) -> Iterator[str]:

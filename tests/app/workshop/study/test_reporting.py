@@ -321,10 +321,11 @@ def test_the_report_counts_a_wizards_acts_and_errors_and_gives_the_delays(tmp_pa
     data = gather(protocol, "study", participants_in(tmp_path / "s"))
     assert [row["undone"] for row in data.tables["acts"]] == [False, True, False, False]
     words = re.sub(r"<[^>]+>", " ", "".join(wizard_parts(data)))
-    assert "4 acts; taken back as errors: 1." in words
+    assert "4 acts; taken back as errors: 1 (25.0 %)." in words
     row = words[words.index(step.part) :].split()
     assert row[row.index("everybody") + 1 :][:4] == ["4", "1", "(25", "%)"]
-    assert "2 1.00 0.71 1.50" in " ".join(row)  # the mean of 0.5 and 1.5, without the error
+    # The mean of 0.5 and 1.5, and that of 9.0 with them, which was an error.
+    assert "1.00, 0.71, 1.50, 2 3.67, 4.65, 9.00, 3" in " ".join(row)
     write_tables(data, tmp_path / "s")
     with (tmp_path / "s" / "acts.csv").open(encoding="utf-8", newline="") as table_file:
         assert [each["delay_s"] for each in csv.DictReader(table_file)] == ["0.5", "9.0", "1.5", ""]
