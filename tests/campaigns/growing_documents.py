@@ -28,14 +28,16 @@ def _text(inside: Make) -> Make:
     return lambda n: block(f"<speech id='s'><text>{inside(n)}</text></speech>")
 
 
+def _many(part: Callable[[int], str], count: int) -> str:
+    return "".join(map(part, range(count)))
+
+
 def _rules(rule: Callable[[int], str], behaviours: str = "<wait id='w'/><head id='h'/>") -> Make:
-    return lambda n: block(
-        behaviours + "<constraint>" + "".join(map(rule, range(n))) + "</constraint>"
-    )
+    return lambda n: block(f"{behaviours}<constraint>{_many(rule, n)}</constraint>")
 
 
 def _each(behaviour: Callable[[int], str]) -> Make:
-    return lambda n: block("".join(map(behaviour, range(n))))
+    return lambda n: block(_many(behaviour, n))
 
 
 def _synchronize(a: str, b: str) -> str:
@@ -46,9 +48,21 @@ def _after(earlier: str, later: str) -> str:
     return f"<after ref='{earlier}'><sync ref='{later}'/></after>"
 
 
-HEADS = "".join(f"<head id='h{i}'/>" for i in range(150))
+def _circle(number: int) -> str:
+    return _after(f"h{number % 150}:end", f"h{(number * 7 + 3) % 150}:start")
 
-MARKS = "".join(f"<sync id='m{i}'/>a " for i in range(400))
+
+def _mark(number: int) -> str:
+    return f"<sync id='m{number}'/>a "
+
+
+def _attribute(number: int) -> str:
+    return f"a{number}='1' "
+
+
+HEADS = _many(lambda i: f"<head id='h{i}'/>", 150)
+
+MARKS = _many(_mark, 400)
 
 
 def bml_texts() -> Iterator[Growing]:
@@ -58,13 +72,7 @@ def bml_texts() -> Iterator[Growing]:
     yield Growing("references in a text", _text(lambda n: "&amp;" * n), 200_000)
     yield Growing("newlines between elements", lambda n: block("\n" * n), 1_000_000)
     yield Growing(
-        "marks in a text",
-        _text(
-            lambda n: (
-                "<sync id='a'/>" * min(n, 1) + "".join(f"<sync id='m{i}'/>a " for i in range(n))
-            )
-        ),
-        4_900,
+        "marks in a text", _text(lambda n: "<sync id='a'/>" * min(n, 1) + _many(_mark, n)), 4_900
     )
     yield Growing("digits of a time", lambda n: block(f"<wait start='{'1' * n}x'/>"), 1_000_000)
     yield Growing(
@@ -139,21 +147,13 @@ def bml_elements() -> Iterator[Growing]:
     yield Growing(
         "unknown children", lambda n: block("<gesture>" + "<x/>" * n + "</gesture>"), 100_000
     )
-    yield Growing(
-        "attributes",
-        lambda n: block("<gesture " + " ".join(f"a{i}='1'" for i in range(n)) + "/>"),
-        60_000,
-    )
+    yield Growing("attributes", lambda n: block("<gesture " + _many(_attribute, n) + "/>"), 60_000)
     yield Growing(
         "namespaces",
-        lambda n: block("<gesture " + " ".join(f"xmlns:a{i}='u{i}'" for i in range(n)) + "/>"),
+        lambda n: block("<gesture " + _many(lambda i: f"xmlns:a{i}='u{i}' ", n) + "/>"),
         30_000,
     )
-    yield Growing(
-        "namespaces in turn",
-        lambda n: block("".join(f"<x{i} xmlns='u{i}'/>" for i in range(n))),
-        40_000,
-    )
+    yield Growing("namespaces in turn", _each(lambda i: f"<x{i} xmlns='u{i}'/>"), 40_000)
     yield Growing("comments", lambda n: block("<!---->" * n), 140_000)
 
 
@@ -185,9 +185,8 @@ def bml_constraints() -> Iterator[Growing]:
     yield Growing(
         "one constraint with many",
         lambda n: block(
-            HEADS
-            + "<constraint><synchronize>"
-            + "".join(f"<sync ref='h{i % 150}:start'/>" for i in range(n))
+            f"{HEADS}<constraint><synchronize>"
+            + _many(lambda i: f"<sync ref='h{i % 150}:start'/>", n)
             + "</synchronize></constraint>"
         ),
         4_800,
@@ -205,21 +204,14 @@ def bml_constraints() -> Iterator[Growing]:
         _rules(lambda i: _after(f"h{148 - i % 149}:end", f"h{149 - i % 149}:start"), HEADS),
         2_400,
     )
-    yield Growing(
-        "orders in circles",
-        _rules(lambda i: _after(f"h{i % 150}:end", f"h{(i * 7 + 3) % 150}:start"), HEADS),
-        2_400,
-    )
+    yield Growing("orders in circles", _rules(_circle, HEADS), 2_400)
     yield Growing(
         "orders that are not met", _rules(lambda i: _after(f"w:end+{i}", "w:start")), 2_400
     )
     yield Growing(
         "required in circles",
         lambda n: block(
-            HEADS
-            + "<required><constraint>"
-            + "".join(_after(f"h{i % 150}:end", f"h{(i * 7 + 3) % 150}:start") for i in range(n))
-            + "</constraint></required>"
+            f"{HEADS}<required><constraint>{_many(_circle, n)}</constraint></required>"
         ),
         2_400,
     )
@@ -248,26 +240,13 @@ def bml_constraints() -> Iterator[Growing]:
 
 def fml() -> Iterator[Growing]:
     """Yield documents of FML."""
-    yield Growing(
-        "intentions",
-        lambda n: (
-            "<fml id='f'>"
-            + "".join(f"<performative id='p{i}' type='greet'/>" for i in range(n))
-            + "</fml>"
-        ),
-        1600,
-        "fml",
-    )
-    yield Growing(
-        "intentions that nobody knows",
-        lambda n: (
-            "<fml id='f'>"
-            + "".join(f"<performative id='p{i}' type='x'/>" for i in range(n))
-            + "</fml>"
-        ),
-        1600,
-        "fml",
-    )
+    for name, kind in (("intentions", "greet"), ("intentions that nobody knows", "x")):
+
+        def make(count: int, kind: str = kind) -> str:
+            parts = _many(lambda i: f"<performative id='p{i}' type='{kind}'/>", count)
+            return f"<fml id='f'>{parts}</fml>"
+
+        yield Growing(name, make, 1600, "fml")
 
 
 def dialects() -> Iterator[Growing]:
@@ -285,7 +264,7 @@ def dialects() -> Iterator[Growing]:
         "spaces of a DTD", lambda n: f"<!DOCTYPE bml SYSTEM{' ' * n}[{' ' * n}]><bml/>", 400_000
     )
     yield of("quotes of a root", lambda n: "<bml " + "a='" * n + "/>", 300_000)
-    yield of("prefixes", lambda n: act("".join(f"<p{i}:x/>" for i in range(n))), 4_900)
+    yield of("prefixes", lambda n: act(_many(lambda i: f"<p{i}:x/>", n)), 4_900)
     yield of("a prefix", lambda n: act("<sbm:animation name='Beat'/>" * n), 1_600)
     yield of("an id used often", lambda n: act("<head id='h' type='NOD'/>" * n), 1_600)
     yield of(
@@ -296,9 +275,7 @@ def dialects() -> Iterator[Growing]:
     yield of("words of a name", lambda n: act(f"<gesture lexeme='{'Beat_' * n}'/>"), 390)
     yield of(
         "marks",
-        lambda n: act(
-            "<speech id='s'>" + "".join(f"<tm id='m{i}'/>a " for i in range(n)) + "</speech>"
-        ),
+        lambda n: act("<speech id='s'>" + _many(lambda i: f"<tm id='m{i}'/>a ", n) + "</speech>"),
         490,
     )
     yield of(
@@ -308,7 +285,7 @@ def dialects() -> Iterator[Growing]:
     )
     yield of(
         "times that are given up",
-        lambda n: act("".join(f"<head type='NOD' start='{i}' end='{i}.1'/>" for i in range(n))),
+        lambda n: act(_many(lambda i: f"<head type='NOD' start='{i}' end='{i}.1'/>", n)),
         1_600,
     )
     yield of(
@@ -325,118 +302,70 @@ def _schedule(pool: str, activate: str) -> str:
 
 
 def _action(name: str, parameters: str = "", motion: str = "") -> str:
-    motion = motion or '<blendableobject type="keyframebodyanimation">human#wave</blendableobject>'
+    motion = motion or _keyframes("human#wave")
     return f'<blendingaction id="{name}">{parameters}{motion}</blendingaction>'
+
+
+def _keyframes(motion: str) -> str:
+    return f'<blendableobject type="keyframebodyanimation">{motion}</blendableobject>'
+
+
+def _actions(count: int) -> str:
+    return _many(lambda i: _action(f"a{i}"), count)
 
 
 ONE = '<activate id="a"/>'
 
 
+def _playing(motion: str) -> str:
+    return _schedule(_action("a", motion=motion), ONE)
+
+
+def _blended(kind: str, inside: str) -> str:
+    parameters = f'<blendingparams type="{kind}">{inside}</blendingparams>'
+    return _schedule(_action("a", parameters), ONE)
+
+
+def _modified(depth: int) -> str:
+    modifier = '<blendableobject type="modifier"><modifier type="stretch" duration="3"/>'
+    return modifier * depth + _keyframes("x") + "</blendableobject>" * depth
+
+
 def schedules() -> Iterator[Growing]:
     """Yield schedules."""
-    wave = 'type="keyframebodyanimation"'
 
     def of(name: str, make: Make, largest: int) -> Growing:
         return Growing(name, make, largest, "schedule")
 
     yield of("newlines", lambda n: _schedule(_action("a") + "\n" * n, ONE), 3_900_000)
-    yield of(
-        "newlines of a name",
-        lambda n: _schedule(
-            _action("a", motion=f"<blendableobject {wave}>{chr(10) * n}x</blendableobject>"), ONE
-        ),
-        3_900_000,
-    )
-    yield of(
-        "references",
-        lambda n: _schedule(
-            _action("a", motion=f"<blendableobject {wave}>{'&amp;' * n}</blendableobject>"), ONE
-        ),
-        1_600_000,
-    )
-    yield of(
-        "actions",
-        lambda n: _schedule("".join(_action(f"a{i}") for i in range(n)), '<activate id="a0"/>'),
-        40_000,
-    )
+    yield of("newlines of a name", lambda n: _playing(_keyframes("\n" * n + "x")), 3_900_000)
+    yield of("references", lambda n: _playing(_keyframes("&amp;" * n)), 1_600_000)
+    yield of("actions", lambda n: _schedule(_actions(n), '<activate id="a0"/>'), 40_000)
     yield of("one activated often", lambda n: _schedule(_action("a"), ONE * n), 200_000)
     yield of(
         "all activated",
-        lambda n: _schedule(
-            "".join(_action(f"a{i}") for i in range(n)),
-            "".join(f'<activate id="a{i}"/>' for i in range(n)),
-        ),
+        lambda n: _schedule(_actions(n), _many(lambda i: f'<activate id="a{i}"/>', n)),
         40_000,
     )
     yield of(
         "merged curves",
-        lambda n: _schedule(
-            _action(
-                "a",
-                '<blendingparams type="merge">'
-                + '<blendingparams type="fade"/>' * n
-                + "</blendingparams>",
-            ),
-            ONE,
-        ),
+        lambda n: _blended("merge", '<blendingparams type="fade"/>' * n),
         200_000,
     )
+    yield of("scopes", lambda n: _blended("joints", '<scope id="torso" weight="1"/>' * n), 200_000)
     yield of(
-        "scopes",
-        lambda n: _schedule(
-            _action(
-                "a",
-                '<blendingparams type="joints">'
-                + '<scope id="torso" weight="1"/>' * n
-                + "</blendingparams>",
-            ),
-            ONE,
-        ),
-        200_000,
+        "rotations", lambda n: _blended("joints", '<rotation id="vl5" weight="1"/>' * n), 200_000
     )
-    yield of(
-        "rotations",
-        lambda n: _schedule(
-            _action(
-                "a",
-                '<blendingparams type="joints">'
-                + '<rotation id="vl5" weight="1"/>' * n
-                + "</blendingparams>",
-            ),
-            ONE,
-        ),
-        200_000,
-    )
-    yield of(
-        "nested modifiers",
-        lambda n: _schedule(
-            _action(
-                "a",
-                motion=(
-                    '<blendableobject type="modifier"><modifier type="stretch" duration="3"/>' * n
-                    + f"<blendableobject {wave}>x</blendableobject>"
-                    + "</blendableobject>" * n
-                ),
-            ),
-            ONE,
-        ),
-        100_000,
-    )
+    yield of("nested modifiers", lambda n: _playing(_modified(n)), 100_000)
     yield of(
         "digits",
         lambda n: _schedule(_action("a"), f'<activate id="a" offset="{"1" * n}x"/>'),
         3_900_000,
     )
-    yield of(
-        "unknown actions",
-        lambda n: _schedule("".join(_action(f"a{i}") for i in range(n)), '<activate id="b"/>'),
-        40_000,
-    )
+    yield of("unknown actions", lambda n: _schedule(_actions(n), '<activate id="b"/>'), 40_000)
     yield of(
         "attributes",
-        lambda n: _schedule(
-            _action("a"), "<activate id='a' " + " ".join(f"a{i}='1'" for i in range(n)) + "/>"
-        ),
+        lambda n: _schedule(_action("a"), "<activate id='a' " + _many(_attribute, n) + "/>"),
         200_000,
     )
     yield of("comments", lambda n: _schedule(_action("a") + "<!---->" * n, ONE), 1_000_000)
