@@ -8,8 +8,11 @@ import numpy as np
 from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.arrays import Floats, Image
 from cubeling.tracking.geometry.frame import Frame
+from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.synthetic import SyntheticOptions
 from tests.bench.hand_scenes import RATE_HZ, HandScene, HandView
+
+CUBE = CubeModel.load("locomotion")
 
 AT_REST = 3
 """Pictures of the desk at rest: they are shown to and fro, and differ by noise and shadow."""
@@ -78,3 +81,9 @@ def _desk_at_rest(view: HandView, cube: str, rate_hz: float, size: Size, index: 
 @functools.lru_cache(1)
 def _scene(view: HandView, cube: str, rate_hz: float, size: Size) -> SizedScene:
     return SizedScene(view, CubeModel.load(cube), rate_hz, size)
+
+
+def state_at(pose: Floats | None, visible: bool = True) -> CubeState:
+    """Return the state of a cube at rest that was found in this pose."""
+    still = np.zeros(6)
+    return CubeState(visible, pose, still, np.zeros((6, 6)), "markers", (), 0.3, 0.0)

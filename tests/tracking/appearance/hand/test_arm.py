@@ -19,8 +19,7 @@ from cubeling.tracking.appearance.hand.window import HandWindow
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import SKINS, HandView
 from tests.examples import some
-from tests.tracking.appearance.hand.resting_scene import RestingScene
-from tests.tracking.appearance.hand.test_finder import CUBE, state_at
+from tests.tracking.appearance.hand.resting_scene import CUBE, RestingScene, state_at
 
 SCALE, EDGE = 3, 30.0
 """Pixels of the image for each of the window, and the cube's edge [px of the window]."""
