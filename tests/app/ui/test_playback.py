@@ -1,7 +1,6 @@
 """Keys and mouse of the player, without a window: what they ask for, and what is shown."""
 
 from dataclasses import replace
-from datetime import datetime
 from pathlib import Path
 
 import cv2
@@ -16,76 +15,21 @@ from cubeling.app.ui.playback import timeline
 from cubeling.app.ui.playback.announcements import NOTICE_S
 from cubeling.app.ui.playback.cards import draw_pills
 from cubeling.app.ui.playback.keys import BINDINGS, key_rows, key_table
-from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.requests import (
-    Choose,
     ListChoices,
-    NameMark,
     OpenCube,
     Pause,
     PlayScenario,
-    Record,
     Seek,
     SeekTo,
     StartOver,
     WindowRequest,
 )
-from cubeling.app.ui.playback.scenario_card import ScenarioCard
-from cubeling.app.ui.playback.status import (
-    EndCard,
-    MenuChoice,
-    PlaybackMark,
-    Position,
-    SessionStatus,
-)
-from cubeling.app.ui.playback.typing_field import MAX_TYPED, TypingField
+from cubeling.app.ui.playback.status import EndCard, PlaybackMark, Position
+from tests.app.ui.playback_desk import NOW, PICTURE, WIDTH, Desk, desk as desk
 
 HERE = Path(__file__).parent
-PICTURE = np.full((360, 640, 3), 90, np.uint8)
-WIDTH = 1280.0
 POSITION = Position(3.0, 20.0, 0.0, 20.0, marks=(PlaybackMark(10.0, "placed front"),))
-NOW = datetime(2026, 5, 4, 15, 3, 9)
-
-
-class Desk:
-    """A layer with a clock, which notes what the window was asked for."""
-
-    def __init__(self, folder):
-        self.time = 0.0
-        self.asked: list[WindowRequest] = []
-        actions = {
-            request: lambda request=request: self.asked.append(request)
-            for request in (WindowRequest.QUIT, WindowRequest.PANELS, WindowRequest.FULL_SCREEN)
-        }
-        self.layer = PlaybackLayer(
-            ("follow", "sketch"),
-            folder,
-            actions,
-            lambda: PICTURE,
-            lambda: self.time,
-            lambda: NOW,
-        )
-
-    def report(self, **status):
-        self.layer.report(SessionStatus(scenario="follow", **status))
-
-    def press(self, *keys):
-        for key in keys:
-            shift, _, name = key.rpartition(" ")
-            self.layer.press(name, shift=bool(shift))
-
-    def shown(self):
-        cards = self.layer.cards((640, 360))
-        shown = np.zeros((360 + round(self.layer.strip_height / 2), 640, 3), np.uint8)
-        shown[:360] = PICTURE
-        for card in cards:
-            card.blend_over(shown)
-        return shown
-
-
-@pytest.fixture
-def desk(tmp_path):
-    return Desk(tmp_path / "kept")
 
 
 def test_every_key_of_the_table_does_what_it_says(desk):
@@ -216,75 +160,6 @@ def test_a_part_is_all_that_the_timeline_reaches():
     assert timeline.position_at(WIDTH, part, WIDTH) == 15.0
 
 
-CHOICES = (
-    MenuChoice("camera", "camera:0", "camera 0", present=True),
-    MenuChoice("character", "vleo", "vleo", present=True),
-    MenuChoice("character", "human", "human"),
-    MenuChoice("robot", "sim", "simulated robot", present=True),
-)
-
-
-def test_the_menu_chooses_by_key(desk):
-    desk.press("Tab")
-    assert desk.layer.take_requests() == (ListChoices(),)
-    desk.report(looking=True)
-    desk.shown()
-    desk.report(choices=CHOICES[:1], looking=True)
-    desk.report(choices=CHOICES)
-    desk.press("→", "→", "↓", "Enter")
-    assert desk.layer.take_requests() == (Choose("character", "human"),)
-    desk.press("→")
-    assert desk.layer.take_requests() == (Seek(5.0),), "the menu is still open"
-
-
-def test_the_menu_chooses_by_mouse_and_closes_by_escape(desk):
-    desk.press("Tab")
-    desk.report(choices=CHOICES)
-    plain = desk.shown()
-    desk.layer.take_requests()
-    # Four columns in the middle of the picture: the second row of the third one.
-    desk.layer.click(750.0, 392.0)
-    assert desk.layer.take_requests() == (Choose("character", "human"),)
-    assert (desk.shown() != plain).any()
-    desk.press("Tab", "Esc")
-    desk.layer.click(750.0, 392.0)
-    assert desk.layer.take_requests() == (ListChoices(),)
-    assert desk.asked == []
-
-
-def test_the_menu_lists_scenarios_too(desk):
-    desk.report()
-    desk.press("Tab", "↓", "Enter")
-    assert desk.layer.take_requests() == (ListChoices(),)
-    assert desk.layer.take_inputs() == Inputs(scenario="sketch")
-
-
-def test_a_scenario_is_chosen_by_its_picture(desk):
-    plain = desk.shown()
-    for choose in (lambda: desk.press("2"), lambda: desk.layer.click(800.0, 300.0)):
-        desk.press("0")
-        assert (desk.shown() != plain).mean() > 0.2
-        choose()
-        assert desk.layer.take_inputs() == Inputs(scenario="sketch")
-        np.testing.assert_array_equal(desk.shown(), plain)
-    for close in (lambda: desk.press("Esc"), lambda: desk.layer.click(20.0, 600.0)):
-        desk.press("0")
-        close()
-        np.testing.assert_array_equal(desk.shown(), plain)
-    assert desk.layer.take_inputs() == Inputs()
-    assert desk.asked == []
-
-
-@pytest.mark.parametrize("count", [1, 4, 5, 9])
-@pytest.mark.parametrize("width", [405.0, 960.0, 1280.0])
-def test_each_scenario_has_a_place_of_its_own_on_the_card(count, width):
-    card = ScenarioCard([f"scenario{number}" for number in range(count)])
-    places = np.mgrid[0:720:8, 0 : int(width) : 8].reshape(2, -1).T
-    found = {card.click(x, y, width) for y, x in places.tolist()}
-    assert found == {None, *range(1, count + 1)}
-    card.draw("scenario0", width, 1.0)  # those of broken packages, too
-
-
 def test_the_corner_has_buttons_for_keys_and_menu(desk):
     plain = desk.shown()
     desk.layer.click(1190.0, 42.0)
@@ -367,85 +242,3 @@ def test_a_long_notice_stays_in_the_room_of_the_hint(scale):
     assert columns[0] > (1280 - HINT_ROOM) / 2
     assert columns[-1] < (1280 + HINT_ROOM) / 2
     assert columns[-1] - columns[0] > 300
-
-
-@pytest.mark.parametrize(
-    ("keys", "names"),
-    [
-        ("2", ["2"]),
-        (["Enter", "F", "E", "L", "L", "Enter"], ["fell"]),
-        (["Enter", "F", "Esc"], []),
-        (["Tab"], []),
-        (["R", "2"], []),
-    ],
-)
-def test_a_mark_gets_a_name_by_the_next_keys(tmp_path, keys, names):
-    desk = Desk(tmp_path)
-    desk.layer.press("B")
-    desk.layer.press("2")  # nothing is recorded: the key plays a scenario
-    assert desk.layer.take_inputs().scenario == "sketch"
-    desk.layer.report(SessionStatus(recorded=True))
-    desk.layer.press("B")
-    for key in keys:
-        desk.layer.press(key)
-    asked = [each.name for each in desk.layer.take_requests() if isinstance(each, NameMark)]
-    assert asked == names
-    desk.layer.take_inputs()
-    desk.layer.press("B")
-    desk.time += 10.0
-    desk.layer.press("2")
-    assert desk.layer.take_inputs().scenario == "sketch"
-
-
-def test_after_a_mark_letters_are_keys(tmp_path):
-    desk = Desk(tmp_path)
-    desk.layer.report(SessionStatus(recorded=True))
-    desk.layer.press("B")
-    desk.layer.press("R")
-    assert isinstance(desk.layer.take_requests()[-1], Record)
-
-
-def test_what_is_typed_is_text_while_the_field_is_open(desk):
-    desk.layer.shows_scenarios = True
-    desk.report(listens=True)
-    assert not desk.layer.shows_scenarios, "who has come to talk can type at once"
-    for key, character in (("H", "h"), ("Q", "q"), ("Space", " "), ("1", "1"), ("", "ñ")):
-        desk.press(key)
-        assert desk.layer.type(character)
-    assert not desk.asked, "Q ends nothing"
-    assert desk.layer.take_inputs() == Inputs(hush=True), "who begins to type interrupts"
-    desk.press("Backspace", "Enter")
-    assert desk.layer.take_inputs() == Inputs(typed="hq 1")
-    desk.press("Enter")
-    assert desk.layer.take_inputs() == Inputs(), "an empty line says nothing"
-
-
-def test_the_keys_are_keys_once_the_field_is_closed(desk):
-    desk.report(listens=True)
-    assert desk.layer.type("a")
-    desk.press("Esc")
-    assert not desk.asked, "the first Esc closes the field"
-    assert not desk.layer.type("?")
-    desk.press("Q")
-    assert desk.asked == [WindowRequest.QUIT]
-    desk.press("Enter")
-    assert desk.layer.type("b"), "Enter opens it again"
-    desk.press("Tab")
-    assert not desk.layer.type("c"), "the menu lies over it"
-
-
-def test_other_scenarios_have_no_field(desk):
-    desk.report(listens=False)
-    plain = desk.shown()
-    assert not desk.layer.type("a")
-    desk.report(listens=True)
-    assert (desk.shown() != plain).any()
-
-
-def test_a_long_line_fits_into_the_field():
-    field = TypingField()
-    for _ in range(400):
-        field.type("w")
-    assert len(field.text) == MAX_TYPED
-    card = field.draw(WIDTH, 1.0)
-    assert card.opacity.shape[1] <= HINT_ROOM + 1
