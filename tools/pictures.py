@@ -43,17 +43,6 @@ from cubeling.app.ui.window import Window
 from cubeling.app.workshop.latency.pattern import draw_pattern
 from cubeling.app.workshop.motion_graphs.timeline import save_timeline
 from cubeling.app.workshop.motion_graphs.transition import find_transitions
-from cubeling.app.workshop.pages.box_plot import box_plot
-from cubeling.app.workshop.pages.page import STYLE
-from cubeling.app.workshop.study.bundled.single_facial_actions import INTENSITY
-from cubeling.app.workshop.study.face_stimuli import RECIPES as ACTIONS, draw_faces
-from cubeling.app.workshop.study.participants.running import run_simulated
-from cubeling.app.workshop.study.participants.stimulus_files import pictures_of
-from cubeling.app.workshop.study.participants.study_log import StudyFolder
-from cubeling.app.workshop.study.protocols.protocol_file import protocol_text, read_protocol
-from cubeling.app.workshop.study.protocols.questionnaires import FACES, Item
-from cubeling.app.workshop.study.reporting.tables import gather
-from cubeling.app.workshop.study.window.sheet import Sheet
 from cubeling.characters import Character
 from cubeling.characters.model.motion_library import library_of
 from cubeling.characters.rendering import create_context
@@ -65,6 +54,7 @@ from cubeling.tracking.synthetic import open_synthetic
 from tools.gesture_sheets import draw_library, draw_settings
 from tools.gesture_tour import draw_tour
 from tools.offscreen import no_display_needed
+from tools.study_pictures import draw_sheets, draw_stimuli, draw_times
 from tools.talk_pictures import draw_play, draw_talk
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
@@ -260,86 +250,6 @@ UNPLUGGED_ROBOT = "sim:cubeling?unplug=12s/1s&seed=3"
 """A simulated robot that is unplugged twice during the session of the mood plot."""
 
 
-def draw_study() -> None:
-    """Plot the times of simulated participants of the study that `cubeling study new` writes."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "turns.toml"
-        path.write_text(protocol_text(None), "utf-8")
-        study = StudyFolder(Path(folder) / "trial", read_protocol(path), path, "simulated")
-        run_simulated(study, 8)
-        rows = gather(study.protocol, "simulated", study.people).tables["tasks"]
-    times = [
-        (name, [row["time_s"] for row in rows if row["condition"] == name])
-        for name in study.protocol.conditions
-    ]
-    plot = box_plot(times, "simulated participants: time until the robot is happy [s]", (0.0, 30.0))
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="720" height="132"><style>{STYLE}</style>'
-    )
-    drawn = plot.replace("<svg ", '<svg width="720" height="132" ')
-    (FOLDER / "study-times.svg").write_text(f"{head}{drawn}</svg>\n", "utf-8")
-
-
-def draw_sheets_of_study() -> None:
-    """Draw what a participant sees in the window."""
-    scale = Item("easy", "The cube was easy to use.", anchors=("totally disagree", "totally agree"))
-    liked = Item("liked", "How did you like it?", pictures=(FACES,))
-    words = Item("rigid", "", anchors=("moving rigidly", "moving elegantly"))
-    better = Item(
-        "better",
-        "Which one suits the speech better?",
-        anchors=("left, much", "left", "same", "right", "right, much"),
-    )
-    shown = [
-        np.asarray(cv2.imread(str(FOLDER / f"companion-{name}.jpg"))) for name in ("kiss", "shout")
-    ]
-    sheets = [
-        Sheet("Experience", item=scale),
-        Sheet("Experience", item=liked, pictures=pictures_of(liked, FOLDER)),
-        Sheet("Your impression of the robot", item=words),
-        Sheet("Pairs", item=better, captions=("left", "right")),
-    ]
-    for sheet, count in zip(sheets, (4, 5, 3, 2), strict=True):
-        for _ in range(count):
-            sheet.press("→")
-    drawn = [sheet.draw(0.5, shown if sheet is sheets[-1] else ()) for sheet in sheets]
-    picture = np.vstack([np.hstack(drawn[:2]), np.hstack(drawn[2:])])
-    cv2.imwrite(str(FOLDER / "study-window.jpg"), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
-
-
-FACE_ROWS = (("high", "with"), ("high", "without"), ("low", "with"))
-"""Intensity and wrinkles of each row of faces."""
-
-FACE_FILE = "{}-woman-{}-{}-picture.png"
-
-FACE_PX = 160
-"""Side of a face in the picture of all [px]."""
-
-
-def draw_faces_of_study() -> None:
-    """Draw the pictures of the experiment with facial actions that are analysed."""
-    with tempfile.TemporaryDirectory() as folder:
-        shown = [action for action in ACTIONS if action in INTENSITY]
-        draw_faces(
-            {"woman": "human", "man": "human"},
-            Path(folder),
-            lambda stimulus: stimulus["mode"] == "picture" and stimulus["agent"] == "woman",
-        )
-        rows = [
-            [
-                cv2.resize(
-                    np.asarray(cv2.imread(str(Path(folder) / FACE_FILE.format(action, *row)))),
-                    (FACE_PX, FACE_PX),
-                    interpolation=cv2.INTER_AREA,
-                )
-                for action in shown
-            ]
-            for row in FACE_ROWS
-        ]
-    picture = np.vstack([np.hstack(row) for row in rows])
-    cv2.imwrite(str(FOLDER / "study-faces.jpg"), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
-
-
 def draw_moods() -> None:
     """Plot a session with three personalities, and one whose robot was unplugged."""
     compared = FOLDER / "mood-personalities.svg"
@@ -434,9 +344,9 @@ if __name__ == "__main__":
     draw_calibration()
     draw_pattern_of_latency()
     draw_moods()
-    draw_study()
-    draw_faces_of_study()
-    draw_sheets_of_study()
+    draw_times(FOLDER)
+    draw_stimuli(FOLDER)
+    draw_sheets(FOLDER)
     draw_transition()
     draw_gestures()
     draw_gesture_editor()
