@@ -148,7 +148,7 @@ def run(
     from datetime import datetime
 
     from cubeling.app.ui.local_pages import LocalPages
-    from cubeling.app.workshop.study.participants.live_task import TaskSetup
+    from cubeling.app.workshop.study.participants.live_task import TaskSetup, check_tasks
 
     place = "page" if page else "window" if window else "terminal"
     try:
@@ -156,6 +156,7 @@ def run(
             pages = closing.enter_context(LocalPages())
             opened = closing.enter_context(instruments.open(loaded.wizard, pages))
             setup = TaskSetup(source, robot, pictures, intrinsics, opened, parts)
+            check_tasks(loaded, setup)
             desk = _open_desk(place, loaded, setup, file, console, pages, closing)
             log = study.begin(participant, datetime.now())  # once all is open: it counts as begun
             done = len(log.plan) - len(log.left)

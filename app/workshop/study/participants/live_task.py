@@ -12,6 +12,7 @@ from cubeling.app.output_path import later_parts
 from cubeling.app.pipeline.step import Step
 from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.opening import open_session
+from cubeling.app.running.option_checks import check_inputs
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions, wizard_acts
 from cubeling.app.session.encoding import MESSAGE_TYPES
@@ -24,6 +25,7 @@ from cubeling.app.workshop.study.protocols.goals import (
 )
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
 from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, StudyTask
+from cubeling.tracking import open_source
 
 
 class _TaskOverError(Exception):
@@ -47,6 +49,21 @@ class TaskSetup:
 
     parts: Mapping[str, Any] = field(default_factory=dict)
     """When a recording goes on in another file: `part_s` and `part_bytes` of `SessionOptions`."""
+
+    def options(self, task: StudyTask, settings: Settings) -> SessionOptions:
+        """Return the settings of a session in which a task is played under a condition."""
+        return SessionOptions(
+            scenario=task.scenario,
+            source=self.source,
+            character=settings.character,
+            personality=settings.personality,
+            controller=settings.controller,
+            turns=settings.turns,
+            robot=self.robot,
+            intrinsics=self.intrinsics,
+            pictures=self.pictures,
+            **self.parts,
+        )
 
 
 class LiveDesk:
@@ -83,23 +100,29 @@ class LiveDesk:
         self.tell(task.name, task.text)
         self.give_way()
         record = free_recording(log.folder, task, step.condition)
-        setup = self._setup
-        options = SessionOptions(
-            scenario=task.scenario,
-            source=setup.source,
-            character=settings.character,
-            personality=settings.personality,
-            controller=settings.controller,
-            turns=settings.turns,
-            robot=setup.robot,
-            intrinsics=setup.intrinsics,
-            pictures=setup.pictures,
+        options = replace(
+            self._setup.options(task, settings),
             record=record,
-            **setup.parts,
             participant=log.code,
             condition=step.condition,
         )
-        return play_task(options, task, setup.instruments), record.name
+        return play_task(options, task, self._setup.instruments), record.name
+
+
+def check_tasks(protocol: Protocol, setup: TaskSetup) -> None:
+    """Refuse what tasks cannot be played with, before a participant has begun.
+
+    Raises
+    ------
+    AppError, AffectError, CharacterError, RobotError, TrackingError
+        The camera cannot be opened, or something that a task names is not there.
+    """
+    for task in protocol.tasks.values():
+        for settings in protocol.conditions.values() or (Settings(),):
+            check_inputs(setup.options(task, settings))
+    if protocol.tasks:
+        with open_source(setup.source):
+            pass
 
 
 def play_task(
