@@ -29,7 +29,9 @@ def figure(value: float | None, digits: int = 2) -> str:
 
 
 def interval(bounds: tuple[float, float], digits: int = 2) -> str:
-    """Return an interval: "[1.20, 3.40]"."""
+    """Return an interval: "[1.20, 3.40]"; "–" for one that is not known (NaN)."""
+    if any(map(math.isnan, bounds)):
+        return "–"
     return f"[{figure(bounds[0], digits)}, {figure(bounds[1], digits)}]"
 
 

@@ -50,7 +50,7 @@ def task_parts(data: StudyData) -> Iterator[str]:
             continue
         yield heading(f"{name}: {task.goal.words} within {task.limit_s:g} s", 3)
         lines = []
-        for condition, played in _by(own, "condition").items():
+        for condition, played in _by_condition(data, own).items():
             reached = sum(bool(row["reached"]) for row in played)
             low, high = share_interval(reached, len(played))
             share = f"{reached} of {len(played)} ({percent(reached / len(played), 0)})"
@@ -74,7 +74,7 @@ def wizard_parts(data: StudyData) -> Iterator[str]:
     )
     lines = []
     for task, own in _by(rows, "task").items():
-        for condition, acts in _by(own, "condition").items():
+        for condition, acts in _by_condition(data, own).items():
             errors = sum(row["undone"] for row in acts)
             low, high = share_interval(errors, len(acts))
             share = f"{errors} ({percent(errors / len(acts), 0)})"
@@ -125,7 +125,7 @@ def scale_parts(data: StudyData) -> Iterator[str]:
     if chosen:
         yield heading("Choices")
     for item, rows in chosen:
-        yield table(_choices(item, rows))
+        yield table(_choices(data, item, rows))
     if texts:
         yield heading("Free answers")
     for item, rows in texts:
@@ -264,9 +264,9 @@ def _described(title: str, by: str, groups: Mapping[str, Values]) -> ReportTable
     return ReportTable(title, (by, *FIGURES), tuple(rows))
 
 
-def _choices(item: Item, rows: Sequence[Row]) -> ReportTable:
+def _choices(data: StudyData, item: Item, rows: Sequence[Row]) -> ReportTable:
     lines = []
-    for condition, own in _by(rows, "condition").items():
+    for condition, own in _by_condition(data, rows).items():
         given = [row["answer"] for row in own if row["answer"] is not None]
         for option in item.options:
             count = given.count(option)
@@ -283,6 +283,12 @@ def _by(rows: Sequence[Row], key: str) -> dict[str, list[Row]]:
     for row in rows:
         found[str(row[key])].append(row)
     return dict(sorted(found.items()))
+
+
+def _by_condition(data: StudyData, rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """Return the rows of each condition, in the order of the protocol."""
+    known = [*data.protocol.conditions, ""]
+    return dict(sorted(_by(rows, "condition").items(), key=lambda each: known.index(each[0])))
 
 
 def _per_condition(rows: Sequence[Row], key: str) -> dict[str, Values]:

@@ -28,7 +28,8 @@ class Described:
 
     median: float
     interval: tuple[float, float]
-    """95 % of the mean, by the bootstrap (bias-corrected and accelerated where it can be)."""
+    """95 % of the mean, by the bootstrap (bias-corrected and accelerated where it can be). NaN
+    for a single value."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ def describe(values: Sequence[float] | Array, seed: int = 0) -> Described:
     sample = np.asarray(values, float)
     spread = float(sample.std(ddof=1)) if len(sample) > 1 else math.nan
     mean = float(sample.mean())
-    interval = (mean, mean)
+    interval = (mean, mean) if len(sample) > 1 else (math.nan, math.nan)
     if len(sample) > 1 and np.ptp(sample) > 0:
         found = stats.bootstrap(
             (sample,), np.mean, n_resamples=RESAMPLES, rng=np.random.default_rng(seed)
