@@ -4,7 +4,6 @@
 and as it comes and goes (Huang 2013, section 4.4; specification S7).
 """
 
-import csv
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
@@ -17,11 +16,12 @@ from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.ui.video_file import VideoFile
+from cubeling.app.workshop.stimuli.film import MANIFEST, write_rows
 from cubeling.app.workshop.study.protocols.protocol import Stimulus
 from cubeling.app.workshop.study.protocols.protocol_file import load_protocol
 from cubeling.characters import Character, Pose
 from cubeling.characters.rendering import PortraitRenderer, create_context
-from cubeling.files import whole_file, write_whole
+from cubeling.files import write_whole
 
 Array = NDArray[np.float64]
 
@@ -49,8 +49,6 @@ RATE, ONSET_S, APEX_S = 25.0, 0.4, 1.0
 """Pictures a second, how long an action takes to come or go, and how long it stays [s]."""
 
 SIZE_PX = (360, 360)
-
-MANIFEST_NAME = "manifest.csv"
 
 
 def morph_weights(morphs: Sequence[str], action: str, strength: float) -> Array:
@@ -126,13 +124,7 @@ def draw_faces(
                         video.write(draw(pose), number / RATE)
             rows.append({**stimulus, "character": agents[stimulus["agent"]], "file": path.name})
             drawn()
-    with (
-        whole_file(folder / MANIFEST_NAME, AppError) as partial,
-        partial.open("w", encoding="utf-8", newline="") as file,
-    ):
-        writer = csv.DictWriter(file, list(rows[0]) if rows else [])
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(folder / MANIFEST, rows)
     return len(rows)
 
 

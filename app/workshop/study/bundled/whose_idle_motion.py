@@ -76,7 +76,7 @@ def printed_tables() -> tuple[ReportTable, ...]:
 
 def own_tables(data: StudyData) -> tuple[ReportTable, ...]:
     """Return the same rates of a study, with their intervals."""
-    from cubeling.app.workshop.study.reporting.statistics import share_interval
+    from cubeling.app.workshop.study.reporting.statistics import share_bounds
 
     answers = [row for row in data.tables["answers"] if row["stimulus"]]
     rows, rates = [], {}
@@ -88,10 +88,9 @@ def own_tables(data: StudyData) -> tuple[ReportTable, ...]:
                 if row["item"] == item and row["stimulus"]["origin"] == origin
             ]
             right = sum(row["answer"] == _truth(row["stimulus"], item) for row in own)
-            low, high = share_interval(right, len(own)) if own else (0.0, 1.0)
             rates[origin, item] = _smoothed(right, own)
             share = percent(right / len(own)) if own else "–"
-            bounds = f"[{percent(low, 0)}, {percent(high, 0)}]"
+            bounds = share_bounds(right, len(own))
             rows.append((f"{item} right, {origin} motion", f"{right}/{len(own)}", share, bounds))
     sensitivity = d_prime(rates["recorded", "origin"], rates["generated", "origin"])
     rows.append(("d′", "", figure(sensitivity), ""))

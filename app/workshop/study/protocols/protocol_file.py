@@ -49,27 +49,9 @@ MAX_LIMIT_S = 7200.0
 ORDERS = ("fixed", "latin", "random")
 
 KEYS = (
-    *(
-        "title",
-        "about",
-        "conditions",
-        "design",
-        "order",
-        "seed",
-        "light_patch",
-        "printed",
-        "condition",
-    ),
-    *(
-        "phase",
-        "instruction",
-        "task",
-        "questionnaire",
-        "stimuli",
-        "resume",
-        "preregistered",
-        "wizard",
-    ),
+    *("title", "about", "conditions", "design", "order", "seed", "light_patch", "printed"),
+    *("condition", "phase", "instruction", "task", "questionnaire", "stimuli", "resume"),
+    *("preregistered", "wizard"),
 )
 
 Named = TypeVar("Named", Instruction, StudyTask, Questionnaire, StimulusSet)

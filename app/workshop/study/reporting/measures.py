@@ -26,7 +26,7 @@ from cubeling.app.workshop.study.reporting.statistics import (
     compare_unpaired,
     describe,
     holm,
-    share_interval,
+    share_bounds,
     sides_p,
 )
 from cubeling.app.workshop.study.reporting.tables import Row, StudyData
@@ -52,9 +52,8 @@ def task_parts(data: StudyData) -> Iterator[str]:
         lines = []
         for condition, played in _by_condition(data, own).items():
             reached = sum(bool(row["reached"]) for row in played)
-            low, high = share_interval(reached, len(played))
             share = f"{reached} of {len(played)} ({percent(reached / len(played), 0)})"
-            lines.append((_condition(condition), share, f"[{percent(low, 0)}, {percent(high, 0)}]"))
+            lines.append((_condition(condition), share, share_bounds(reached, len(played))))
         yield table(ReportTable("Reached", ("condition", "reached", "95 % interval"), tuple(lines)))
         times = _per_condition(own, "time_s")
         yield from _compared(data, f"Time to the goal [s]: {name}", times, "time [s]", (0.0, None))
@@ -76,9 +75,8 @@ def wizard_parts(data: StudyData) -> Iterator[str]:
     for task, own in _by(rows, "task").items():
         for condition, acts in _by_condition(data, own).items():
             errors = sum(row["undone"] for row in acts)
-            low, high = share_interval(errors, len(acts))
             share = f"{errors} ({percent(errors / len(acts), 0)})"
-            bounds = f"[{percent(low, 0)}, {percent(high, 0)}]"
+            bounds = share_bounds(errors, len(acts))
             cued = [row for row in acts if row["delay_s"] is not None]
             meant = _delays([row for row in cued if not row["undone"]])
             lines.append(
@@ -270,9 +268,8 @@ def _choices(data: StudyData, item: Item, rows: Sequence[Row]) -> ReportTable:
         given = [row["answer"] for row in own if row["answer"] is not None]
         for option in item.options:
             count = given.count(option)
-            low, high = share_interval(count, max(len(given), 1))
             share = percent(count / max(len(given), 1))
-            bounds = f"[{percent(low, 0)}, {percent(high, 0)}]"
+            bounds = share_bounds(count, len(given))
             lines.append((option, _condition(condition), f"{count}/{len(given)}", share, bounds))
     columns = ("answer", "condition", "n", "share", "95 % interval")
     return ReportTable(item.words, columns, tuple(lines))

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from cubeling.app.workshop.pages.report_table import percent
+
 Array = NDArray[np.float64]
 
 RESAMPLES = 2000
@@ -131,10 +133,12 @@ def holm(p_values: Sequence[float]) -> list[float]:
     return corrected
 
 
-def share_interval(count: int, total: int) -> tuple[float, float]:
-    """Return the 95 % interval of a share, by E. B. Wilson (1927)."""
+def share_bounds(count: int, total: int) -> str:
+    """Return the 95 % interval of a share, by E. B. Wilson (1927): "[39 %, 94 %]"."""
+    if not total:
+        return "–"
     found = stats.binomtest(count, total).proportion_ci(method="wilson")
-    return float(found.low), float(found.high)
+    return f"[{percent(found.low, 0)}, {percent(found.high, 0)}]"
 
 
 def sides_p(first_left: int, total: int) -> float:

@@ -9,7 +9,7 @@ import pytest
 from cubeling.app.errors import AppError
 from cubeling.app.workshop.study.face_stimuli import (
     APEX_S,
-    MANIFEST_NAME,
+    MANIFEST,
     ONSET_S,
     RATE,
     RECIPES,
@@ -33,7 +33,7 @@ def wanted(stimulus):
 @pytest.mark.slow(reason="51 portraits are drawn")
 def test_wrinkles_and_strength_are_seen_and_the_manifest_says_so(tmp_path):
     assert draw_faces(BOTH, tmp_path, wanted) == 5
-    with (tmp_path / MANIFEST_NAME).open(encoding="utf-8", newline="") as file:
+    with (tmp_path / MANIFEST).open(encoding="utf-8", newline="") as file:
         rows = {row["file"]: row for row in csv.DictReader(file)}
     assert all((tmp_path / name).is_file() for name in rows)
     assert {row["character"] for row in rows.values()} == {"human"}
