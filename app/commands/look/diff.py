@@ -48,7 +48,8 @@ def diff(
         console.print(Text(f"{first.name} and {second.name} hold the same"), soft_wrap=True)
         return
     table = Table(box=SIMPLE_HEAD)
-    for name in ("", first.name, second.name):
+    table.add_column(no_wrap=True)
+    for name in (first.name, second.name):
         table.add_column(Text(name), overflow="fold")
     for each in found:
         table.add_row(Text(each.what), Text(each.first), Text(each.second))

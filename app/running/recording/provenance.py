@@ -49,6 +49,7 @@ def played(
         "character_sha256": "\n".join(map(_character_hash, names)),
         "personality": options.personality or scenario.personality,
         "controller": options.controller,
+        "turns": f"{options.turns:g}",
         "cube": playground.cube.name,
         "cube_folded": json.dumps([_folded(player.cube) for player in playground.players]),
         "lens": _lens(options, source, playground.intrinsics),

@@ -134,6 +134,11 @@ SESSION_COLUMNS = (
     played("character_sha256", "SHA-256 of the characters' files, a line each"),
     played("personality", "The personality", lambda options: options.personality),
     played("controller", "What moved the character", lambda options: options.controller),
+    played(
+        "turns",
+        "Full turns of the cube from the least to the greatest intensity",
+        lambda options: f"{options.turns:g}",
+    ),
     played("lens", "Whose lens the camera has; its numbers are in the session"),
     played("robot", "URL of the robot, a line each"),
     played("driver", "Its protocol, a line each"),

@@ -12,6 +12,9 @@ from cubeling.app.session.encoding import upgrade
 UNCOMPARED_KEYS = ("session", "bytes", "channels")
 """Keys of the figures that differ between any two files, or are compared by themselves."""
 
+MAX_SHOWN_ENTRIES = 12
+"""A list with more entries is one value, of which their number is shown."""
+
 MAX_SHOWN_CHARS = 48
 """Longest value that is shown whole."""
 
@@ -70,15 +73,18 @@ def _topics(session: SessionFile) -> set[str]:
 
 
 def _flat(document: dict[str, Any], before: str = "") -> dict[str, Any]:
-    """Return nested tables as one, "tracking.found_share"; lists are one value."""
+    """Return nested tables and short lists as one, "tracking.found_share", "states[1].what"."""
     flat: dict[str, Any] = {}
     for key, value in document.items():
         if not before and key in UNCOMPARED_KEYS:
             continue
-        if isinstance(value, dict):
-            flat |= _flat(value, f"{before}{key}.")
+        name = f"{before}{key}"
+        if isinstance(value, list) and len(value) <= MAX_SHOWN_ENTRIES:
+            parts = {f"{name}[{place}]": each for place, each in enumerate(value)}
         else:
-            flat[f"{before}{key}"] = value
+            parts = {name: value}
+        for part, each in parts.items():
+            flat |= _flat(each, f"{part}.") if isinstance(each, dict) else {part: each}
     return flat
 
 

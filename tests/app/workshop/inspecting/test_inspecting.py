@@ -10,6 +10,7 @@ import pytest
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.session import Recorder, frame_encoder
+from cubeling.app.workshop.inspecting.difference import figure_differences
 from cubeling.app.workshop.inspecting.figures import read_figures, spells
 from cubeling.app.workshop.inspecting.summary import document_of, lines_of
 from cubeling.app.workshop.pages.line_plot import line_plot
@@ -146,3 +147,12 @@ def test_a_long_curve_keeps_its_peaks():
     assert len(heights) <= 1200
     assert len({*heights}) == 2
     assert drawn.count("M") >= 2  # it is broken where nothing is known
+
+
+def test_what_differs_in_a_short_list_is_named():
+    one = {"states": [{"what": "idle", "seconds": 1.0}], "mean": [0.1, 0.2]}
+    other = {"states": [{"what": "kiss", "seconds": 1.0}], "mean": [0.1, 0.3]}
+    found = [(each.what, each.first, each.second) for each in figure_differences(one, other)]
+    assert found == [("states[0].what", "idle", "kiss"), ("mean[1]", "0.2", "0.3")]
+    many = {"gaps": list(range(100))}
+    assert [each.first for each in figure_differences(many, {"gaps": []})] == ["100 entries"]
