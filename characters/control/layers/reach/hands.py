@@ -23,6 +23,14 @@ BLEND_S = 0.3
 JOIN_S = 0.3
 """How long it takes at least to join in late, or to go to another place than before [s]."""
 
+USUAL_AWAY_RAD, MOST_AWAY_RAD = 0.3, 1.8
+"""How far a joint of an arm is from where it hangs while the body stirs [rad], and the angle up to
+which more than that counts."""
+
+AWAY_SLOWNESS = 0.42
+"""How much longer a hand takes for each radian that its arm is farther away [1/rad]: another act
+has taken it there and is given up, so its way is longer, and the arm is still going back."""
+
 RELAX_S = 0.6
 """How long it takes to go if its end is not known [s]."""
 
@@ -47,14 +55,20 @@ class ReachingHand:
     """Whether it is now asked to be somewhere else than a frame before."""
 
     _joined: tuple[float, float] = (0.0, 0.0)
+    _slowness: float = 1.0
     _left: tuple[float, float] | None = None
     way: WayRound = field(default_factory=WayRound)
     """By which way its arm goes there."""
 
     _weights: PlannedValues = field(default_factory=lambda: PlannedValues(1, BLEND_S))
 
-    def follow(self, intent: ReachIntent, place: Vector, now: float, step: float) -> None:
-        """Go on with an intent, or begin it; its place moves at most `step` [m] without a jump."""
+    def follow(
+        self, intent: ReachIntent, place: Vector, now: float, step: float, away: float = 0.0
+    ) -> None:
+        """Go on with an intent, or begin it; its place moves at most `step` [m] without a jump.
+
+        `away` is how far its arm is from where it hangs [rad]: what another act has left of it.
+        """
         old = self.intent
         self.jumped = self.weight > 0.0 and (
             old is None
@@ -63,6 +77,8 @@ class ReachingHand:
         )
         if old is None or old.key != intent.key or self._left is not None:
             self._joined, self._left = (now, self.weight), None
+            farther = max(min(away, MOST_AWAY_RAD) - USUAL_AWAY_RAD, 0.0)
+            self._slowness = 1.0 + (AWAY_SLOWNESS * farther if self.weight == 0.0 else 0.0)
         self.intent, self.place = intent, place
 
     def leave(self, now: float) -> None:
@@ -93,6 +109,7 @@ class ReachingHand:
         begin, ready = max(times.start, since), times.ready
         if since > times.start:  # it joins in late, or comes from another place
             ready = max(ready, since + JOIN_S)
+        ready = begin + self._slowness * (ready - begin)
         there = ease((now - begin) / (ready - begin), "gonio") if now < ready else 1.0
         weight = before + (1.0 - before) * there
         if times.relax is None or now <= times.relax:

@@ -74,7 +74,7 @@ class ReachLayer:
         self._switched = self._jumped = 0.0
         if not self._hands:
             return
-        standing = StandingBody.of(character)
+        self._standing = standing = StandingBody.of(character)
         self._surface = standing.surface
         self._nearest = NearestHand(self._body, standing.shoulders)
         self._openness, self._power = 0.5, 0.0
@@ -90,11 +90,18 @@ class ReachLayer:
         step = MAX_TARGET_SPEED * self._height * max(context.elapsed, 1e-3)
         for side, hand in self._hands.items():
             if side in asked:
-                hand.follow(*asked[side], now, step)
+                away = 0.0 if hand.weight else self._away(side, pose)
+                hand.follow(*asked[side], now, step, away)
             else:
                 hand.leave(now)
             hand.advance(now)
         return self._move_hands(pose, context)
+
+    def _away(self, side: str, pose: Pose) -> float:
+        """Return how far an arm is from where it hangs: the largest angle of its joints [rad]."""
+        joints = np.array(self._body.arms[side].joints)
+        cosines = np.abs(np.vecdot(pose.rotations[joints], self._standing.rotations[joints]))
+        return float(2.0 * np.arccos(cosines.min().clip(0.0, 1.0)))
 
     def _assign(
         self, reaches: Sequence[ReachIntent], context: FrameContext
@@ -244,6 +251,9 @@ class StandingBody:
     shoulders: dict[str, Vector]
     """Where its arms begin, in the character frame [m]."""
 
+    rotations: NDArray[np.float64]
+    """Those of its joints, (joints, 4)."""
+
     @staticmethod
     def of(character: Character) -> "StandingBody":
         """Return that of a character; the last few characters' are kept."""
@@ -258,7 +268,8 @@ class StandingBody:
             side: tuple(placed[arm.joints[1]].tolist())
             for side, arm in character.upper_body.arms.items()
         }
-        _KEPT.append(StandingBody(character, surface_of(character, standing), shoulders))
+        surface = surface_of(character, standing)
+        _KEPT.append(StandingBody(character, surface, shoulders, standing.rotations))
         return _KEPT[-1]
 
 
