@@ -36,8 +36,8 @@ class ShowScenario:
     """Plays one of the cast by the file of its class, which `show_scenario` makes.
 
     Of the first one it makes those of the others (`CastDirector`). Where the file ends with a
-    dialogue, that takes over with its cue, or for a while as soon as the player types: the first
-    character answers from where it is.
+    dialogue, that takes over with its cue, or for a while as soon as the player types or speaks:
+    the first character answers from where it is.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ class ShowScenario:
         if self._who == 0:
             if inputs.clear:
                 self._begin_again()
-            if inputs.typed and self.dialogue is not None:
+            if (inputs.typed or inputs.hush) and self.dialogue is not None:
                 stage.take_over(comes_back=True)
             if visible:
                 stage.advance(now)

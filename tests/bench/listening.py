@@ -1,9 +1,14 @@
-"""How well a talk hears: `python -m tests.bench.listening [FOLDER]`.
+"""How well a talk hears: `python -m tests.bench.listening [FOLDER] [--tuning]`.
 
-Voices of eSpeak NG say lines of the bundled script, which its recogniser is made of, alone and with
-noise; then what is not in it: other sentences by the same voices, silence, noise, and the
-recordings of people in a folder, cut into parts of three seconds. Prints how many lines are heard
-right, wrong, and not at all, and how often something is heard in what is not in the script.
+Voices say lines of the bundled script, which its recogniser is made of, alone and with noise; then
+what is not in it: other sentences by the same voices, silence, noise, and the recordings of people
+in a folder, cut into parts of three seconds. Prints how many lines are heard right, wrong, and not
+at all, and how often something is heard in what is not in the script.
+
+Who judges is not who the thresholds were chosen with: voices, lines, other sentences and people are
+split. With `--tuning` it is the other half, by eSpeak NG. The judging voices are those of Flite,
+made of recordings of three people, where that is installed (apt-get install flite), or else other
+ones of eSpeak NG.
 
 A synthetic voice that reads the grammar's own lines is an upper bound: nobody hesitates, no room
 echoes, and no child has lent the model its voice.
@@ -14,11 +19,14 @@ Exits with 1 if fewer than `MIN_RIGHT` of the lines without noise are right, or 
 
 import argparse
 import re
+import shutil
+import subprocess
 import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from rich.console import Console
@@ -27,20 +35,39 @@ from rich.table import Table
 from cubeling.app.scenarios.dialogue.scenario import BUNDLED_SCRIPT
 from cubeling.app.scenarios.dialogue.vocabulary import TALK_VOCABULARY
 from cubeling.characters.behaviour import phrases_of, read_script
-from cubeling.characters.speech import Manner, Samples, SpeechRecognizer, espeak, read_speech
+from cubeling.characters.speech import (
+    Manner,
+    Samples,
+    Speech,
+    SpeechRecognizer,
+    espeak,
+    read_speech,
+)
 from cubeling.characters.speech.recognition import CARRIERS, SpokenPhrase
 from cubeling.characters.speech.voices import Voice
 
 MIN_RIGHT, MAX_FALSE = 0.75, 0.15
 """Least share of lines that are heard right, and greatest share of others that are heard."""
 
-VOICES = {
+TUNING = {
     "en-us": ("en-us", Manner(rate=0.85)),
-    "en-us, high": ("en-us", Manner(rate=0.85, pitch=1.6)),
-    "en-gb-x-rp": ("en-gb-x-rp", Manner(rate=0.85)),
-    "en-gb-scotland": ("en-gb-scotland", Manner(rate=0.85)),
+    "en-us, 3, high": ("en-us", Manner(rate=0.9, pitch=1.3, speaker=3)),
+    "en-gb-x-rp, 1": ("en-gb-x-rp", Manner(rate=0.85, speaker=1)),
 }
-"""Language and manner of those who speak, by name."""
+"""Language and manner of the voices with which the thresholds were chosen, by name."""
+
+JUDGING = {
+    "en-us, 2, high": ("en-us", Manner(rate=0.85, pitch=1.6, speaker=2)),
+    "en-gb-scotland": ("en-gb-scotland", Manner(rate=0.85)),
+    "en-029": ("en-029", Manner(rate=0.85)),
+}
+"""The same of those that judge where there is no Flite."""
+
+FLITE = ("slt", "rms", "awb")
+"""Voices of Flite: a woman and a man from the USA, and a man from Scotland."""
+
+TUNING_PEOPLE = ("sense_and_sensibility", "english_")
+"""How the names of the recordings begin with which the thresholds were chosen."""
 
 NOISES_DB = (None, 20.0, 10.0)
 """Signal-to-noise ratios of white noise over the speech [dB]; None for none."""
@@ -65,7 +92,6 @@ def line_of(phrase: SpokenPhrase, rng: np.random.Generator) -> str:
 
 def spoken(voice: Voice, line: str, who: str) -> tuple[Samples, int]:
     """Return what a voice says, with silence around it, and its rate [Hz]."""
-    language, manner = VOICES[who]
     for plain, written in (
         ("im", "I'm"),
         ("dont", "don't"),
@@ -73,8 +99,15 @@ def spoken(voice: Voice, line: str, who: str) -> tuple[Samples, int]:
         ("whats", "what's"),
     ):
         line = re.sub(rf"\b{plain}\b", written, line)
-    speech = voice.say(line, language, manner)
+    speech = _by_flite(line, who) if who in FLITE else voice.say(line, *{**TUNING, **JUDGING}[who])
     return np.pad(speech.samples, round(QUIET_S * speech.rate)), speech.rate
+
+
+def _by_flite(line: str, who: str) -> Speech:
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "line.wav")
+        subprocess.run(("flite", "-voice", who, "-t", line, "-o", str(path)), check=True)
+        return read_speech(path)
 
 
 def with_noise(sound: Samples, ratio_db: float | None, rng: np.random.Generator) -> Samples:
@@ -99,20 +132,25 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Measure how well a talk hears.")
     parser.add_argument("folder", nargs="?", type=Path, help="recordings of people")
     parser.add_argument("--lines", type=int, default=40)
+    parser.add_argument("--tuning", action="store_true", help="the half that is not the judge")
     parser.add_argument("--details", action="store_true", help="print what is heard wrong")
     wanted = parser.parse_args()
     rng, console = np.random.default_rng(1), Console()
     phrases = phrases_of(read_script(BUNDLED_SCRIPT, TALK_VOCABULARY), "en")
+    half = 0 if wanted.tuning else 1
+    judging = FLITE if shutil.which("flite") else tuple(JUDGING)
+    voices = tuple(TUNING) if wanted.tuning else judging
     began = time.process_time()
     with espeak() as voice:
         recognizer = SpeechRecognizer(phrases, voice)
         made_s = time.process_time() - began
-        lines = [line_of(phrases[k], rng) for k in rng.permutation(len(phrases))[: wanted.lines]]
-        said = [(who, line, *spoken(voice, line, who)) for who in VOICES for line in lines]
+        chosen = rng.permutation(len(phrases))[half::2][: wanted.lines]
+        lines = [line_of(phrases[k], rng) for k in chosen]
+        said = [(who, line, *spoken(voice, line, who)) for who in voices for line in lines]
         others = [
             ("other sentences", line, *spoken(voice, line, who))
-            for who in VOICES
-            for line in OTHER_LINES
+            for who in voices
+            for line in OTHER_LINES[half::2]
         ]
     others += [
         ("silence", "", np.zeros(48_000, np.float32), 16_000),
@@ -122,7 +160,11 @@ def main() -> int:
         ),
     ]
     if wanted.folder is not None:
-        others += [("people", name, *part) for name, *part in parts_of(wanted.folder)]  # type: ignore[misc]
+        others += [
+            ("people", name, *part)  # type: ignore[misc]
+            for name, *part in parts_of(wanted.folder)
+            if name.startswith(TUNING_PEOPLE) == wanted.tuning
+        ]
     table = Table(
         "noise", "who", "lines", "right", "wrong", "not heard", title="lines of the script"
     )
@@ -140,12 +182,12 @@ def main() -> int:
             counts[who, what] += 1
             if wanted.details and what != "right":
                 console.print(f"{ratio} {who}: {line} → {found}", markup=False)
-        for who in VOICES:
+        for who in voices:
             figures = [counts[who, what] for what in ("right", "wrong", "not heard")]
             name = "none" if ratio is None else f"{ratio:g} dB"
             table.add_row(name, who, f"{len(lines)}", *map(str, figures))
         if ratio is None:
-            right_share = sum(counts[who, "right"] for who in VOICES) / len(said)
+            right_share = sum(counts[who, "right"] for who in voices) / len(said)
     heard: Counter[tuple[str, bool]] = Counter()
     for kind, line, sound, rate in others:
         found = recognizer.weigh(sound, rate)

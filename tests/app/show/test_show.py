@@ -12,7 +12,7 @@ import pytest
 
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.checkpoint import Checkpoint
-from cubeling.app.pipeline.scenario import OVER_EVENT, Inputs, ScenarioSettings
+from cubeling.app.pipeline.scenario import OVER_EVENT, ConversingScenario, Inputs, ScenarioSettings
 from cubeling.app.pipeline.table.attention import Attention
 from cubeling.app.pipeline.table.situation import SeenCube, Situation
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
@@ -32,6 +32,11 @@ from tests.bundled_characters import bundled_character
 CUBE = CubeModel.load("companion")
 ANTIGONE = Path("app/show/antigone.show")
 FRAME = 1 / 30
+TALK = (
+    '<dialogue><unit name="u"><state name="q"><transition>'
+    '<condition type="input_match">* you *</condition><action type="say">Me.</action>'
+    "</transition></state></unit></dialogue>"
+)
 VOICE_S = 6.0
 """How long every line of the made up voice is [s]."""
 
@@ -135,11 +140,7 @@ def test_a_voice_that_never_answers_stalls_nothing(hand):
 
 
 def test_typing_hands_over_to_the_dialogue_in_mid_play(hand, tmp_path):
-    (tmp_path / "my.xml").write_text(
-        '<dialogue><unit name="u"><state name="q"><transition>'
-        '<condition type="input_match">* you *</condition><action type="say">Me.</action>'
-        "</transition></state></unit></dialogue>"
-    )
+    (tmp_path / "my.xml").write_text(TALK)
     path = show_of(
         tmp_path,
         '<say who="a">A long story begins.</say><wait seconds="60"/><talk script="my.xml"/>',
@@ -158,11 +159,7 @@ def test_typing_hands_over_to_the_dialogue_in_mid_play(hand, tmp_path):
 
 
 def test_the_play_goes_on_after_a_talk(hand, tmp_path):
-    (tmp_path / "my.xml").write_text(
-        '<dialogue><unit name="u"><state name="q"><transition>'
-        '<condition type="input_match">* you *</condition><action type="say">Me.</action>'
-        "</transition></state></unit></dialogue>"
-    )
+    (tmp_path / "my.xml").write_text(TALK)
     path = show_of(
         tmp_path,
         '<say who="a" id="x">A story begins.</say><wait for="x"/><say who="b" id="y">It ends.</say>'
@@ -324,3 +321,17 @@ def test_an_act_whose_time_is_known_is_told_ahead(hand, tmp_path):
     for found, begins, name in ((told[1], nods, "nod"), (told[0], waves, "wave")):
         ((start, action),) = found
         assert (start, action) == (pytest.approx(begins, abs=0.15), name)
+
+
+def test_who_is_spoken_to_in_a_play_is_its_dialogue(tmp_path):
+    path = show_of(tmp_path, '<say who="a">Hello there.</say><talk script="my.xml"/>')
+    (tmp_path / "my.xml").write_text(TALK)
+    found = show_scenario(path)(CUBE, ScenarioSettings())
+    assert isinstance(found, ConversingScenario)
+    assert found.conversation is not None
+    assert found.conversation.languages == (found.language,)
+    theatre = Theatre(Hand(), path)
+    theatre.play(1.0)
+    assert theatre.frame(hush=True)[0].hush, "who begins to speak is listened to"
+    silent = show_scenario(show_of(tmp_path, '<say who="a">Hello there.</say>'))
+    assert silent.conversation is None
