@@ -259,7 +259,12 @@ class CellSearch:
         patch, aligned = run.patch, run.aligned
         assert patch is not None
         assert aligned is not None
-        compared = self._in_view(aligned.camera_from_cube) <= set(aligned.correlations)
+        # Beside many faces, one that is seen from the side, and cannot be missing, tells nothing.
+        many = len(aligned.correlations) > MAX_FINE_FACES
+        in_view = self._in_view(
+            aligned.camera_from_cube, MIN_SEEN_COSINE if many else MIN_FACING_COSINE
+        )
+        compared = in_view <= set(aligned.correlations)
         match = self._match(aligned) if compared else self._weigh(patch, aligned)
         if not match or not match.found:
             return replace(run, match=match, step="")
@@ -327,9 +332,9 @@ class CellSearch:
         """Weigh a pose by all faces that it shows."""
         return self._match(self._aligner.realign(patch, aligned, None, steps=1, fine=fine))
 
-    def _in_view(self, camera_from_cube: Array) -> set[str]:
+    def _in_view(self, camera_from_cube: Array, min_cosine: float = MIN_FACING_COSINE) -> set[str]:
         """Return the names of the faces that may be compared at a pose, (4, 4)."""
-        facing = self._faces.faces_towards(camera_from_cube, MIN_FACING_COSINE)
+        facing = self._faces.faces_towards(camera_from_cube, min_cosine)
         return {self._faces.names[number] for number in facing}
 
     def _match(self, aligned: StillAlignment | None) -> CellMatch | None:

@@ -25,6 +25,9 @@ COARSE_SAMPLES, FINE_SAMPLES, BLOCKS_PER_SIDE = 24, 48, 6
 """Samples along each side of a marker with that paper, in a search and to measure, and blocks, each
 one measurement."""
 
+SMALL_SAMPLES = 18
+"""Samples instead of `COARSE_SAMPLES` where a picture has about as many pixels there."""
+
 MIN_SAMPLES = 60
 """Fewer samples in view than this do not determine a pose."""
 
@@ -82,9 +85,14 @@ class PlacedSamples:
 
 
 class SamplePlacer:
-    """Places samples on the markers of one cube seen by one camera, with texels of a size [m]."""
+    """Places samples on the markers of one cube seen by one camera, with texels of a size [m].
 
-    def __init__(self, cube: CubeModel, projection: Projection, texel: float) -> None:
+    In a search there are `samples` of them along each side of a marker with its paper.
+    """
+
+    def __init__(
+        self, cube: CubeModel, projection: Projection, texel: float, samples: int = COARSE_SAMPLES
+    ) -> None:
         self.faces = FacePlanes(cube)
         """The faces, whose indices are those of `PlacedSamples.facing`."""
         self.texel = texel
@@ -95,8 +103,7 @@ class SamplePlacer:
         self._projection = projection
         self._frames = np.stack([face_frame(face) for face in cube.faces])
         self._coarse, self._fine = (
-            SampleGrid(count, self.reach, BLOCKS_PER_SIDE)
-            for count in (COARSE_SAMPLES, FINE_SAMPLES)
+            SampleGrid(count, self.reach, BLOCKS_PER_SIDE) for count in (samples, FINE_SAMPLES)
         )
 
     def place(

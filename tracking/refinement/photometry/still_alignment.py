@@ -33,7 +33,9 @@ from cubeling.tracking.refinement.photometry.photometric_fit import (
 )
 from cubeling.tracking.refinement.photometry.placed_samples import (
     BLOCKS_PER_SIDE,
+    COARSE_SAMPLES,
     MIN_FACING_COSINE,
+    SMALL_SAMPLES,
     PlacedSamples,
     SamplePlacer,
 )
@@ -68,8 +70,8 @@ MAX_STEPS, CONVERGED_PX, MAX_SLIDE_PX = 12, 0.03, 1.5
 """Steps at most, the length of the last, and from which length on the samples are placed again."""
 
 MAX_SMALL_CELL_PX, MIN_SMALL_FACES = 3.0, 3
-"""Cells smaller than this are rendered with fewer texels where so many faces are compared: their
-pose is not measured with more samples afterwards."""
+"""Cells smaller than this are rendered with fewer texels, and compared in fewer samples, where so
+many faces are compared: their pose is not measured with more samples afterwards."""
 
 REDRAW_RATIO = 1.6
 """The markers are drawn again, with the blur found so far, where its variance has changed by more
@@ -135,9 +137,11 @@ class StillAligner:
     """Aligns one cube seen by one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
-        every = (MarkerTextures(cube, count) for count in (TEXELS_PER_CELL, SMALL_TEXELS_PER_CELL))
+        sizes = (TEXELS_PER_CELL, COARSE_SAMPLES), (SMALL_TEXELS_PER_CELL, SMALL_SAMPLES)
+        every = ((MarkerTextures(cube, texels), samples) for texels, samples in sizes)
         self._large, self._small = (
-            (textures, SamplePlacer(cube, projection, textures.texel)) for textures in every
+            (textures, SamplePlacer(cube, projection, textures.texel, samples))
+            for textures, samples in every
         )
         self._placer = self._large[1]
         self._focal = float(projection.matrix[0, 0])
