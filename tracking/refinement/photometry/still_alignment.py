@@ -103,14 +103,11 @@ class StillAlignment:
     correlations: dict[str, float]
     """Correlation of rendering and image on each face in view, −1…1."""
 
-    inner: dict[str, float]
-    """The same over the cells inside the border alone, which tell markers apart."""
+    cells: Indices
+    """The cell inside the border of each sample, −1 for none, (N,)."""
 
-    wrong: dict[str, int]
-    """How many of these cells are not as bright as they should be."""
-
-    visible: dict[str, tuple[float, float]]
-    """Correlation over the samples that fit, and their share."""
+    cell_count: int
+    """How many such cells a face has."""
 
     evidence: Evidence
     """How much the image speaks for the pose."""
@@ -126,6 +123,24 @@ class StillAlignment:
 
     prior: Array
     """Standard deviations of its unknowns beside the pose, (K,)."""
+
+    @cached_property
+    def inner(self) -> dict[str, float]:
+        """As `correlations`, over the cells inside the border alone, which tell markers apart."""
+        alike = self.fit.correlations_within(self.cells >= 0)
+        return dict(zip(self.correlations, alike.tolist(), strict=True))
+
+    @cached_property
+    def wrong(self) -> dict[str, int]:
+        """How many of these cells of each face are not as bright as they should be."""
+        counts = self.fit.wrong_cells(self.cells, self.cell_count)
+        return dict(zip(self.correlations, map(int, counts), strict=True))
+
+    @cached_property
+    def visible(self) -> dict[str, tuple[float, float]]:
+        """Correlation over the samples that fit, and their share, of each face."""
+        alike = self.fit.visible_correlations.tolist()
+        return dict(zip(self.correlations, map(tuple, alike), strict=True))
 
     @cached_property
     def covariance(self) -> Array:
@@ -260,7 +275,6 @@ class StillAligner:
     ) -> StillAlignment:
         names = [self._placer.faces.names[number] for number in placed.facing]
         alike = np.nan_to_num(fit.correlations[1:])
-        cells, inner = self._inner_cells(placed)
         area = (
             np.abs(np.linalg.det(placed.texels_to_pixels)) * (2 * self._placer.reach / texel) ** 2
         )
@@ -278,9 +292,7 @@ class StillAligner:
             float(optics[2]),
             bends,
             dict(zip(names, alike.tolist(), strict=True)),
-            dict(zip(names, fit.correlations_within(cells >= 0).tolist(), strict=True)),
-            dict(zip(names, map(int, fit.wrong_cells(cells, inner)), strict=True)),
-            dict(zip(names, map(tuple, fit.visible_correlations.tolist()), strict=True)),
+            *self._inner_cells(placed),
             Evidence(evidence, float((bent / self._bend_errors**2).sum())),
             fit.scale / max(fit.contrast, 1.0),
             markers,
