@@ -10,7 +10,7 @@ from collections import deque
 import numpy as np
 
 from cubeling.tracking.geometry.arrays import Array
-from cubeling.tracking.geometry.robust_statistics import median_with_error
+from cubeling.tracking.geometry.robust_statistics import median, median_with_error
 from cubeling.tracking.refinement.edges.edge_fit import FittedEdges
 from cubeling.tracking.refinement.edges.profiles import row_shares
 
@@ -65,7 +65,7 @@ class ReadoutEstimator:
         ways = (found[forward], found[~forward])
         if min(map(len, ways)) < MIN_SAMPLES_EACH_WAY:
             return
-        median, error = median_with_error(found)
-        agree = all(abs(float(np.median(way)) - median) < median / 3 for way in ways)
-        if agree and median > max(MIN_READOUT_S, MIN_DEVIATIONS * error):
-            self.seconds = min(median, MAX_READOUT_S)
+        middle, error = median_with_error(found)
+        agree = all(abs(median(way) - middle) < middle / 3 for way in ways)
+        if agree and middle > max(MIN_READOUT_S, MIN_DEVIATIONS * error):
+            self.seconds = min(middle, MAX_READOUT_S)
