@@ -102,7 +102,9 @@ Step = Literal[
 ]  # fmt: skip
 """A step of a search; "" after the last one."""
 
-EFFORT = {"align coarsely": 3, "join": 2, "measure": 2}
+EFFORT = {
+    "align": 2, "align coarsely": 5, "join": 2, "measure": 2, "weigh measured": 3, "flatten": 2,
+}  # fmt: skip
 """How many times as long as the others some steps take."""
 
 

@@ -51,12 +51,13 @@ BUDGET_PICTURES = 2.2
 """What the trials of one call may cost beside the passes that each call begins with, counted in
 pictures that are read: about as many detections by OpenCV."""
 
-SMALL_PICTURE_PX, SMALL_BUDGET_PX = 640 * 480, 13_000_000
-"""Pictures of at most so many pixels have this budget instead [px]: both leans of a lone face.
-Those take as long as in a large picture: by the other budget a cube that moves through small
-pictures has gone before it is found, and 40 % fewer frames are trusted."""
+SMALL_PICTURE_PX, SMALL_BUDGET_PX = 640 * 480, 2_700_000
+"""Pictures of at most so many pixels have this budget instead [px]: several faces at one lean, or
+half of what both leans of a lone face take. Comparing cells takes as long as in a large picture: by
+the other budget a cube that moves through small pictures has gone before it is found, and with both
+leans in one call that takes as long as ten detections."""
 
-CELLS_COST_PX, BLUR_COST_PX = 900_000, 4_000_000
+CELLS_COST_PX, BLUR_COST_PX = 450_000, 4_000_000
 """What a short step of comparing the cells with the image costs, and aligning a blurred image: as
 much as reading so many pixels for partly hidden markers. `make bench-photographs` prints what calls
 take."""
@@ -218,11 +219,15 @@ class GlobalDetector:
         """
         if not read:
             return search, []
+        known = {each.face.name for each in search.seen}
         search = replace(search, seen=(*search.seen, *read))
         if lie_flat(read):
             return replace(search, flat=True, found=()), []
         solutions = self._poses.solve(read, search.expected)
-        if crisp or len({each.face.side for each in read}) > 1:
+        sides = {each.face.side for each in read}
+        # A later pass has better corners, but the edges beside a lone marker stay as they were.
+        again = len(sides) == 1 and known.issuperset(each.face.name for each in read)
+        if len(sides) > 1 or (crisp and not again):
             agreed = self._poses.find_agreed(search.markers.grey, solutions, read, search.tone)
             if agreed is not None:
                 return search.find([agreed]), []

@@ -5,6 +5,7 @@ import pytest
 from cubeling.tracking import CubeModel, CubeTracker, Frame
 from cubeling.tracking.gestures.gestures import CubeGestures
 from tests.tracking.drawn import CAMERA, held, off, photograph, scene
+from tests.tracking.showing import show_until_decided
 
 BOX = CubeModel.from_document(
     {
@@ -59,7 +60,8 @@ WEDGE = CubeModel.from_document(
 def test_a_body_is_found_where_it_is(body: CubeModel) -> None:
     pose = held(x=0.4, y=-0.5, z=0.1)
     tracker, gestures = CubeTracker(body, CAMERA), CubeGestures(body)
-    for index in range(3):
+    _, calls = show_until_decided(tracker, photograph(scene((body, pose))))
+    for index in range(len(calls), len(calls) + 3):
         picture = photograph(scene((body, pose)), seed=index)
         state = tracker.update(Frame(picture, index / 30, index))
         assert state.visible, state.verdict
@@ -76,6 +78,6 @@ def test_two_markers_of_one_side_lean_either_way_as_one_does(lean: tuple[float, 
     pose = held(*lean, z=0.0, at=(0, 0, 0.6))
     for seed in range(2):
         picture = photograph(scene((BOX, pose)), noise=2.0, seed=seed)
-        state = CubeTracker(BOX, CAMERA).update(Frame(picture, 0.0, 0))
+        state, _ = show_until_decided(CubeTracker(BOX, CAMERA), picture)
         assert state.visible
         assert off(state.camera_from_cube, pose)[1] < 2
