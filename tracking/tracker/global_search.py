@@ -28,7 +28,7 @@ from cubeling.tracking.refinement.footprint import Footprint
 from cubeling.tracking.refinement.photometry.photometric_fit import Alignment
 from cubeling.tracking.tracker.frame_markers import FrameMarkers, Pass
 from cubeling.tracking.tracker.marker_poses import MarkerPoses
-from cubeling.tracking.tracker.verdict import is_unambiguous
+from cubeling.tracking.tracker.verdict import choose_nearest, is_unambiguous
 
 MIN_HALVED_HEIGHT_PX = 600
 """Images of at least this height are searched at half their size first."""
@@ -165,9 +165,7 @@ class GlobalDetector:
         `thorough` looks for partly hidden markers too, else others that OpenCV finds with more
         effort are read: each frame has one of the two. `expected` is the predicted pose.
         """
-        passes: tuple[Pass, ...] = ("half size", "first window")
-        # A bool as an index: small images skip the pass at half size.
-        passes = passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]
+        passes = _passes(markers)
         if last is not None and _show_the_same(last.frame.image, markers.frame.image):
             return self._go_on(last)
         new = Search(markers, expected, tone)
@@ -183,8 +181,22 @@ class GlobalDetector:
             return self._go_on(last)
         rest = self._read_hidden if thorough else self._read_others
         trials = [trial for plan in plans for trial in plan]
-        new = new.try_first([*trials, Trial(markers.grey.size, rest), Trial(0.0, self._try_blur)])
+        # A low image is read at twice its size, with four times the pixels.
+        doubled = thorough and len(markers.grey) < MIN_SINGLE_HEIGHT_PX
+        cost = markers.grey.size * (4.0 if doubled else 1.0)
+        new = new.try_first([*trials, Trial(cost, rest), Trial(0.0, self._try_blur)])
         return self._go_on(new)
+
+    def carry(self, pose: Array, markers: FrameMarkers) -> Array | None:
+        """Return where the one marker that is read in a later frame shows a cube, (4, 4).
+
+        It is the lean of that marker that continues a pose, (4, 4); None where that is not clear.
+        """
+        read = markers_of(self._cube, markers.read(self._cube.dictionary, _passes(markers)[0]))
+        alone = read if len(read) == 1 else []
+        solutions = [each.camera_from_cube for each in self._poses.solve(alone, pose)]
+        nearest = choose_nearest(pose, solutions) if solutions else None
+        return None if nearest is None else solutions[nearest]
 
     def holds(self, search: Search, frame: Frame) -> bool:
         """Whether a later frame shows the same where a search has found the cube."""
@@ -344,6 +356,12 @@ class GlobalDetector:
             return search.try_first([self._alignment(starts[1:], 0, None, found)])
         # Where no blur explains the image, the corners are still the best guess.
         return replace(search, found=found or search.found)
+
+
+def _passes(markers: FrameMarkers) -> tuple[Pass, ...]:
+    """Return the quick passes over an image; small ones skip that at half size."""
+    passes: tuple[Pass, ...] = ("half size", "first window")
+    return passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]
 
 
 def _in_order(starts: list[_Start]) -> list[_Start]:

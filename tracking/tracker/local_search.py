@@ -57,9 +57,18 @@ class LocalTracker:
         self._blur = blur
 
     def search(
-        self, image: Image, track: Track, prediction: Prediction, camera: CameraModel
+        self,
+        image: Image,
+        track: Track,
+        prediction: Prediction,
+        camera: CameraModel,
+        *,
+        crisp: bool = False,
     ) -> LocalMatch:
-        """Find the cube in an image, (H, W, 3) BGR, near its predicted pose."""
+        """Find the cube in an image, (H, W, 3) BGR, near its predicted pose.
+
+        `crisp` is whether a marker was read there: then nothing is gained by aligning blur.
+        """
         patch = self._footprint.crop(image, prediction.camera_from_cube, camera.tone)
         if patch is None:
             return LocalMatch()
@@ -70,6 +79,8 @@ class LocalTracker:
             match = self._cells.search(image, prediction.camera_from_cube, camera.tone)
             if match is not None and match.proved:
                 return LocalMatch(match.candidate)
+        if crisp:
+            return LocalMatch()
         return self._by_blur(patch, track, prediction, camera)
 
     def _by_edges(

@@ -12,6 +12,7 @@ from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.refinement.blur_search import BlurSearch
+from cubeling.tracking.refinement.camera_model import CameraModel
 from cubeling.tracking.refinement.cell_search import CellSearch
 from cubeling.tracking.refinement.edge_search import EdgeSearch
 from cubeling.tracking.refinement.lens_estimate import LensEstimate
@@ -22,9 +23,10 @@ from cubeling.tracking.tracker.global_search import GlobalDetector, Search
 from cubeling.tracking.tracker.learned_camera import LearnedCamera
 from cubeling.tracking.tracker.local_search import LocalMatch, LocalTracker
 from cubeling.tracking.tracker.measured_lens import track_through
-from cubeling.tracking.tracker.prediction import Track, TrackedPose
+from cubeling.tracking.tracker.prediction import Prediction, Track, TrackedPose
 from cubeling.tracking.tracker.rest import Rest
 from cubeling.tracking.tracker.verdict import (
+    MAX_CHOICE_AGE_S,
     FollowedPoseJudge,
     Past,
     Verdict,
@@ -133,6 +135,10 @@ class CubeTracker:
         match, camera = LocalMatch(), self._camera.estimator
         if prediction is not None:
             match = self._local_tracker.search(image, past.track, prediction, camera.model)
+            if match.candidate is None:
+                # A marker may show where the cube has gone from there.
+                markers = markers or FrameMarkers(frame, self._detectors)
+                match = self._search_at_marker(markers, prediction, camera.model) or match
             camera.learn(match.blur, match.studied)
         tone = camera.model.tone
 
@@ -159,7 +165,7 @@ class CubeTracker:
             # Judge the poses: which one is it, and can a hand have moved the cube there?
             verdict = judge_detected(search.found, prediction, past, now)
             if search.frame is not frame and not self._global_detector.holds(search, frame):
-                return self._await(verdict, now)
+                return self._await(verdict, search, markers)
 
         # Add a trusted pose to the track, with its velocity; else keep predicting.
         self._past = verdict.past
@@ -232,16 +238,40 @@ class CubeTracker:
             focal_scale=self._camera.measured.scale,
         )
 
-    def _await(self, verdict: Verdict, now: float) -> CubeState:
+    def _search_at_marker(
+        self, markers: FrameMarkers, prediction: Prediction, camera: CameraModel
+    ) -> LocalMatch | None:
+        """Search where a marker shows a cube that has left its predicted pose; None if none does.
+
+        The track tells its lean: it must be as young as for `judge_detected`.
+        """
+        track, frame = self._past.track, markers.frame
+        last = track.poses[-1]
+        if frame.timestamp - last.timestamp >= MAX_CHOICE_AGE_S:
+            return None
+        start = self._global_detector.carry(prediction.camera_from_cube, markers)
+        if start is None or not last.reaches(start, frame.timestamp):
+            return None
+        there = replace(prediction, camera_from_cube=start)
+        match = self._local_tracker.search(frame.image, track, there, camera, crisp=True)
+        return match if match.candidate else None
+
+    def _await(self, verdict: Verdict, search: Search, markers: FrameMarkers) -> CubeState:
         """Look from the next frame on near a pose that was found in an earlier picture.
 
-        Something has moved there since: the cube has to be found again to be trusted.
+        Something has moved there since: the cube has to be found again to be trusted. Where the
+        newest frame shows a marker, that is where the cube is by now.
         """
-        found, past = verdict.candidate, verdict.past
+        found, past, now = verdict.candidate, verdict.past, markers.frame.timestamp
         if found is None or verdict.refused:
             self._past = past
             return self._predict(now, verdict.refused)
-        awaited = TrackedPose(found.camera_from_cube, np.zeros(6), found.covariance, now)
+        pose, still = found.camera_from_cube, np.zeros(6)
+        before = TrackedPose(pose, still, found.covariance, search.frame.timestamp)
+        carried = self._global_detector.carry(pose, markers)
+        if carried is not None and before.reaches(carried, now):
+            pose = carried
+        awaited = TrackedPose(pose, still, found.covariance, now)
         # Both leans of a single face were weighed.
         self._past = replace(past, track=Track((awaited,)), jump=None, tilt_settled=True)
         return self._predict(now, "searching")

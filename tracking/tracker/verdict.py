@@ -191,14 +191,23 @@ def _choose(
     if not others:
         return best, ""
     if prediction is not None and now - track.poses[-1].timestamp < MAX_CHOICE_AGE_S:
-        near, far = sorted(
-            (se3.angle_between(prediction.camera_from_cube, each.camera_from_cube), number)
-            for number, each in enumerate((best, others[0]))
+        both = best, others[0]
+        nearest = choose_nearest(
+            prediction.camera_from_cube, [each.camera_from_cube for each in both]
         )
-        # Twice as far: with both about as near, the last pose would decide by its noise.
-        if near[0] < MAX_CHOICE_ANGLE and far[0] > 2 * near[0]:
-            return (best, others[0])[near[1]], ""
+        if nearest is not None:
+            return both[nearest], ""
     return best, "ambiguous"
+
+
+def choose_nearest(expected: Array, poses: Sequence[Array]) -> int | None:
+    """Return which of the poses of a face, (4, 4), continues the expected one; None if unclear."""
+    near, *others = sorted(
+        (se3.angle_between(expected, pose), number) for number, pose in enumerate(poses)
+    )
+    # Twice as far: with both about as near, the last pose would decide by its noise.
+    clear = near[0] < MAX_CHOICE_ANGLE and all(far[0] > 2 * near[0] for far in others)
+    return near[1] if clear else None
 
 
 def _continued_track(candidate: Candidate, past: Past, now: float) -> Track | None:

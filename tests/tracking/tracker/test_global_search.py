@@ -1,5 +1,6 @@
 """A cube is found anywhere in an image: cheaply where possible, thoroughly where needed."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import cv2
@@ -21,7 +22,7 @@ from cubeling.tracking.refinement.edge_search import EdgeSearch
 from cubeling.tracking.synthetic import open_synthetic
 from cubeling.tracking.tracker import global_search
 from cubeling.tracking.tracker.frame_markers import FrameMarkers, Pass
-from cubeling.tracking.tracker.global_search import GlobalDetector
+from cubeling.tracking.tracker.global_search import GlobalDetector, Search, Trial
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.tracking.drawn import CAMERA, WIDE, held, off, photograph, scene
 from tests.tracking.showing import show_until_decided
@@ -262,8 +263,43 @@ def test_a_new_picture_that_shows_the_cube_at_once_ends_the_search() -> None:
     assert not tracker.searching
 
 
-def test_a_small_picture_is_searched_in_one_call() -> None:
-    picture, pose = lone_face()
-    state = CubeTracker(LONE, CAMERA).update(Frame(picture, 0.0, 0))
+@pytest.mark.parametrize("camera", [CAMERA, WIDE], ids=["small", "large"])
+def test_no_call_does_more_than_its_budget_and_one_trial(
+    camera: Intrinsics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pose = held(0.5, 0.3, 0.2, at=(0.0, 0.0, 0.3))
+    picture = photograph(scene((LONE, pose), camera=camera))
+    spent: list[float] = []
+
+    def counted(cost: float, run: Callable[[Search], Search]) -> Trial:
+        def run_counted(search: Search) -> Search:
+            spent[-1] += cost
+            return run(search)
+
+        return Trial(cost, run_counted)
+
+    monkeypatch.setattr(global_search, "Trial", counted)
+    tracker, verdict = CubeTracker(LONE, camera), "searching"
+    while verdict == "searching":
+        spent.append(0.0)
+        verdict = tracker.update(Frame(picture, len(spent) / 30, len(spent))).verdict
+    assert verdict == "trusted"
+    size = camera.size[0] * camera.size[1]
+    small = size <= global_search.SMALL_PICTURE_PX
+    budget = global_search.SMALL_BUDGET_PX if small else global_search.BUDGET_PICTURES * size
+    # A lone face takes several calls, or the budget would say nothing.
+    assert len(spent) > 2
+    assert max(spent) <= max(budget, 3 * global_search.CELLS_COST_PX)
+
+
+def test_a_cube_that_has_left_its_place_is_followed_by_its_marker() -> None:
+    first, _ = lone_face()
+    tracker = CubeTracker(LONE, CAMERA)
+    state, calls = show_until_decided(tracker, first)
     assert state.visible
-    assert off(state.camera_from_cube, pose)[0] < 1.0
+    # 18 px from frame to frame, more than edges and blur reach.
+    moved, pose = lone_face(right=0.009)
+    after = tracker.update(Frame(moved, len(calls) / 30, len(calls)))
+    assert after.visible
+    assert not tracker.searching
+    assert off(after.camera_from_cube, pose)[0] < 1
