@@ -16,6 +16,8 @@ REFLECTION = np.array([-1.0, 1.0, 1.0])
 _MAX_ASYMMETRY = 0.25  # median distance from symmetry over the distance from left to right
 # Penalties for names that do not match, in body sizes: another name, another number.
 _NAME_PENALTY, _NUMBER_PENALTY = 0.1, 0.01
+# "lhipjoint" and "rhipjoint" lie at one place, where each could also be its own partner.
+_OWN_PARTNER_PENALTY = 1e-6
 # "LeftFoot", "foot_l", "Foot.R.001", "FootL": a word, or a letter that is alone or ends a word.
 _SIDE_IN_NAME = re.compile(
     r"[Ll]eft|LEFT|[Rr]ight|RIGHT|(?<![A-Za-z])[LRlr](?![A-Za-z])|(?<=[a-z])[LR](?![a-z])"
@@ -44,6 +46,7 @@ def paired_joints(
             (a, b): float(np.linalg.norm(positions[a] * REFLECTION - positions[b])) / size
             + _misfit(skeleton.names[a], skeleton.names[b])
             + (0.0 if given.get(a, b) == b and given.get(b, a) == a else np.inf)
+            + (_OWN_PARTNER_PENALTY if a == b else 0.0)
             for a in ours
             for b in theirs
         }
@@ -64,9 +67,11 @@ def _misfit(name: str, other: str) -> float:
 
     >>> _misfit("Palm2L", "Palm2R"), _misfit("LeftArm_06", "RightArm_09"), _misfit("ArmL", "LegR")
     (0.0, 0.01, 0.1)
+    >>> _misfit("lhipjoint", "rhipjoint"), _misfit("LHipJoint", "RHipJoint")
+    (0.0, 0.0)
     """
     swapped = _SIDE_IN_NAME.sub(_other_side, name)
-    if swapped == other:
+    if swapped == other or (name[1:] == other[1:] and _OTHER_SIDE_OF.get(name[:1]) == other[:1]):
         return 0.0
     plain, plain_other = (re.sub(r"[_\s\d]+", "", each).lower() for each in (swapped, other))
     return _NUMBER_PENALTY if plain == plain_other else _NAME_PENALTY

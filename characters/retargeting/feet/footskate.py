@@ -70,6 +70,20 @@ class FootContacts:
         """Return the contacts at these frames."""
         return FootContacts(self.heel[frames], self.ball[frames])
 
+    @property
+    def mirrored(self) -> "FootContacts":
+        """The contacts of the mirror image, whose left and right legs are exchanged."""
+        sides = [leg + 1 - 2 * (leg % 2) for leg in range(self.ball.shape[1])]
+        return FootContacts(self.heel[:, sides], self.ball[:, sides])
+
+    def then_mirrored(self) -> "FootContacts":
+        """Return the contacts of a loop of one step, followed by those of its mirror image."""
+        frames = np.arange(len(self.ball) - 1)
+        once, image = self.at(frames), self.mirrored.at(frames)
+        both = zip((once.heel, once.ball), (image.heel, image.ball), strict=True)
+        heel, ball = (np.concatenate([one, other, one[:1]]) for one, other in both)
+        return FootContacts(heel, ball)
+
 
 def find_foot_contacts(clip: Clip, rig: Rig, legs: Sequence[LegJoints]) -> FootContacts:
     """Return when the feet of a clip stand, on the heel or on the ball."""

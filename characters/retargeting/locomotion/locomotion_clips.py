@@ -18,7 +18,6 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.model.mirroring import mirror_of
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.motion.mirror import Mirror
-from cubeling.characters.retargeting.feet.footskate import FootContacts
 from cubeling.characters.retargeting.locomotion.cycle import (
     LoopCut,
     close_loop,
@@ -99,7 +98,7 @@ def make_locomotion(
     with suppress(CharacterError):  # of characters that are not symmetric
         mirror = mirror_of(walker)
     for kind, names, given in (("walk", WALK_CLIPS, walks), ("run", RUN_CLIPS, runs)):
-        gaits = [extract_gait(recording, character, walker) for recording in given]
+        gaits = [extract_gait(recording, character, walker, mirror) for recording in given]
         recordings += [GaitReport.of(gait.origin, gait, walker.meshes) for gait in gaits]
         for gait in gaits and _tree_gaits(kind, names, gaits, mirror):
             clips[gait.clip.name] = gait.clip
@@ -166,13 +165,11 @@ def _mirror(gait: GaitCycle, mirror: Mirror) -> GaitCycle:
     count = len(image) - 1
     order = (np.arange(len(image)) + count // 2) % count
     poses = move_to_trajectory(image.in_place[order], image.track)
-    sides = [leg + 1 - 2 * (leg % 2) for leg in range(gait.contacts.ball.shape[1])]
-    heel, ball = gait.contacts.heel[order][:, sides], gait.contacts.ball[order][:, sides]
     mirrored = replace(
         gait,
         clip=replace(image, poses=poses),
         path=ArcPath(gait.path.speed, -gait.path.yaw_rate),
-        contacts=FootContacts(heel, ball),
+        contacts=gait.contacts.at(order).mirrored,
     )
     # A body that is not exactly symmetric steps elsewhere.
     return mirrored.with_held_feet()
@@ -183,7 +180,7 @@ def _idle_from(recording: Recording, character: Character, walker: Character) ->
     clip, _ = on_character(recording, character, walker)
     rig = Rig(walker.skeleton, walker.anatomy)
     cut = LoopCut(0, len(clip) - 1, 0.0) if clip.loop else find_pause(clip, rig)
-    loop = close_loop(clip, cut)
+    loop = close_loop(clip, [clip.in_place[slice(cut.start, cut.end + 1)]])
     loop = resample_loop(loop, MAX_RATE_HZ) if loop.rate > MAX_RATE_HZ else loop
     return face_ahead(replace(loop, name="idle", root_motion=True), rig)
 

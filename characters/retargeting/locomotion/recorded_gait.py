@@ -2,7 +2,7 @@
 
 import math
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,17 +11,26 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.locomotion.gaits import MIN_CYCLE_LENGTH
 from cubeling.characters.model.character import Character
 from cubeling.characters.motion.clip import Clip
+from cubeling.characters.motion.mirror import Mirror
 from cubeling.characters.motion.motion import RootDelta
 from cubeling.characters.retargeting.feet.footskate import FootContacts, find_foot_contacts
-from cubeling.characters.retargeting.feet.ground_motion import find_ground_motion
+from cubeling.characters.retargeting.feet.ground_motion import find_ground_motion, transform
 from cubeling.characters.retargeting.locomotion.cycle import (
     LoopCut,
     close_loop,
+    cut_at,
     find_cycle,
+    find_middle,
     resample_loop,
+    symmetric_steps,
 )
 from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
-from cubeling.characters.retargeting.locomotion.grading import refuse_lying, refuse_other_motion
+from cubeling.characters.retargeting.locomotion.grading import (
+    MAX_SEAM_CM,
+    PERSON_LEG_M,
+    refuse_lying,
+    refuse_other_motion,
+)
 from cubeling.characters.retargeting.locomotion.looking_ahead import look_ahead
 from cubeling.characters.retargeting.measures import knee_quantiles
 from cubeling.characters.retargeting.recording import Recording
@@ -33,23 +42,53 @@ from cubeling.characters.retargeting.root import (
     move_to_trajectory,
     with_root_trajectory,
 )
-from cubeling.characters.skeleton.pose import Array, Skeleton
+from cubeling.characters.skeleton.pose import Array, Pose, Skeleton
 
 MAX_RATE_HZ = 60.0
 """Finer recordings are resampled."""
 
+_MAX_STRAIGHT_TURN = math.radians(20.0)  # of a stride whose steps are made alike
 _MAX_REPEATED_SEAM = 0.1  # leg lengths; parts of a loop that differ more do not repeat
 
 
-def extract_gait(recording: Recording, character: Character, walker: Character) -> GaitCycle:
-    """Return the best cycle of a recording; `walker` is the character with a root joint."""
+@dataclass(frozen=True)
+class _Stride:
+    """A stride of a recording on the walker, before it is closed."""
+
+    steps: list[Pose]
+    """All of it in place, or its two steps one by one."""
+
+    contacts: FootContacts
+    """When its feet stand; the last frame is the first again."""
+
+    seam: float
+    """See `LoopCut.seam` [leg lengths]."""
+
+    delta: RootDelta
+    """Its way."""
+
+    knees: Array | None
+    """See `GaitCycle.source_knees`."""
+
+
+def extract_gait(
+    recording: Recording, character: Character, walker: Character, mirror: Mirror | None = None
+) -> GaitCycle:
+    """Return the best cycle of a recording; `walker` is the character with a root joint.
+
+    With its mirror, the steps of a take that hardly repeats are made alike.
+    """
     refuse_lying(recording)
     rig = Rig(walker.skeleton, walker.anatomy, walker.meshes)
     clip, contacts = on_character(recording, character, walker)
-    clip = _without_treadmill(clip, rig, contacts)
-    cut = _cycle_of(clip, rig, contacts.any[:, :2])
-    start, end = (RootDelta(*clip.track[frame]) for frame in (cut.start, cut.end))
-    delta = start.inverse().then(end)
+    recorded = recording.clip, Rig(recording.skeleton, recording.anatomy)
+    moved = _without_treadmill(clip, rig, contacts)
+    # Whoever is to walk like it, a recording repeats where the recorded body does.
+    cut = _cycle_of(*(recorded if moved is clip else (moved, rig)), contacts.any[:, :2])
+    clip = moved
+    if not clip.loop or cut.seam > 0.0:
+        cut = cut_at(clip, rig, cut.start, cut.end)
+    clip, delta = _along_its_way(clip, cut, rig)
     seconds = (cut.end - cut.start) / clip.rate
     path = ArcPath.of(delta, seconds)
     if path.speed * seconds < MIN_CYCLE_LENGTH * character.height:
@@ -57,13 +96,16 @@ def extract_gait(recording: Recording, character: Character, walker: Character) 
             f"{recording.origin}: goes nowhere ({path.speed:.2f} m/s), and its feet do not stand "
             "as on a treadmill of constant speed; give a clip that walks"
         )
-    # The root looks along the arc: half of the turn is before the middle of its chord.
-    yaw = math.atan2(delta.x, delta.z) - delta.yaw / 2
-    children = np.flatnonzero(np.array(rig.skeleton.parents) == 0)
-    poses = with_root_trajectory(clip.poses, children, clip.track + [0.0, 0.0, yaw])
-    loop = close_loop(replace(clip, poses=poses), cut)
-    # The last frame of the cycle is the first again.
-    contacts = contacts.at(np.array([*range(cut.start, cut.end), cut.start]))
+    frames = np.array([*range(cut.start, cut.end), cut.start])
+    steps, knees = (
+        [clip.in_place[slice(cut.start, cut.end + 1)]],
+        _source_knees(recording, rig, cut),
+    )
+    stride = _Stride(steps, contacts.at(frames), cut.seam, delta, knees)
+    if 100 * PERSON_LEG_M * cut.seam > MAX_SEAM_CM and abs(delta.yaw) < _MAX_STRAIGHT_TURN:
+        image = _image_of(clip, recording, character, walker, mirror)
+        stride = _with_like_steps(stride, clip, image, rig, cut, contacts)
+    loop, contacts, delta = close_loop(clip, stride.steps), stride.contacts, stride.delta
     down = contacts.any[:-1, 0]
     landing = int(np.argmax(down & ~np.roll(down, 1)))  # of the left foot; 0 if it never lands
     order = (np.arange(len(loop)) + landing) % (len(loop) - 1)
@@ -72,14 +114,75 @@ def extract_gait(recording: Recording, character: Character, walker: Character) 
         fine = len(loop)
         loop = resample_loop(loop, MAX_RATE_HZ)
         contacts = contacts.at(np.linspace(0, fine - 1, len(loop)).round().astype(int))
-    path = ArcPath(path.speed * seconds / loop.duration, delta.yaw / loop.duration)
+    path = ArcPath.of(delta, loop.duration)
     times = np.arange(len(loop)) / loop.rate
     poses = move_to_trajectory(loop.poses, path.at(times))
     loop = replace(loop, poses=poses, root_motion=True)
-    seam, knees = cut.seam * rig.leg_length, _source_knees(recording, rig, cut)
-    gait = GaitCycle(recording.origin, loop, rig, contacts, path, seam, knees).with_held_feet()
+    seam = stride.seam * rig.leg_length
+    gait = GaitCycle(recording.origin, loop, rig, contacts, path, seam, stride.knees)
+    gait = gait.with_held_feet()
     refuse_other_motion(gait)
     return gait
+
+
+def _along_its_way(clip: Clip, cut: LoopCut, rig: Rig) -> tuple[Clip, RootDelta]:
+    """Return a clip whose root looks along the way of a cycle, and that way."""
+    start, end = (RootDelta(*clip.track[frame]) for frame in (cut.start, cut.end))
+    way = start.inverse().then(end).then(cut.drift)
+    # The root looks along the arc: half of the turn is before the middle of its chord.
+    first = RootDelta(yaw=math.atan2(way.x, way.z) - way.yaw / 2)
+    last = cut.drift.then(first)
+    x, z, yaw = (
+        np.interp(np.arange(len(clip)), [cut.start, cut.end], ends)
+        for ends in ((first.x, last.x), (first.z, last.z), (first.yaw, last.yaw))
+    )
+    moved = transform(clip.track, np.stack([x, np.zeros_like(x), z], axis=-1))
+    track = np.stack([moved[:, 0], moved[:, 2], clip.track[:, 2] + yaw], axis=-1)
+    children = np.flatnonzero(np.array(rig.skeleton.parents) == 0)
+    return replace(clip, poses=with_root_trajectory(clip.poses, children, track)), way
+
+
+def _image_of(
+    clip: Clip,
+    recording: Recording,
+    character: Character,
+    walker: Character,
+    mirror: Mirror | None,
+) -> Clip | None:
+    """Return the mirror image of a clip; None if neither body nor recording is symmetric.
+
+    Who is not symmetric does what the mirror image of the recorded person does.
+    """
+    if walker.anatomy.kind != "humanoid":
+        return None
+    if mirror is not None:
+        return mirror.clip(clip)
+    with suppress(CharacterError):
+        other = Mirror.of(recording.skeleton).clip(recording.clip)
+        image, _ = on_character(replace(recording, clip=other), character, walker)
+        children = np.flatnonzero(np.array(walker.skeleton.parents) == 0)
+        track = clip.track * [-1.0, 1.0, -1.0]
+        return replace(image, poses=with_root_trajectory(image.poses, children, track))
+    return None
+
+
+def _with_like_steps(
+    stride: _Stride, clip: Clip, image: Clip | None, rig: Rig, cut: LoopCut, contacts: FootContacts
+) -> _Stride:
+    """Return a stride straight ahead whose steps are mirror images of each other, if it can be."""
+    middle = None if image is None else find_middle(clip, image, rig, cut, contacts.any[:, :2])
+    if image is None or middle is None:
+        return stride
+    steps = symmetric_steps(clip, image, cut, middle)
+    frames = np.linspace(cut.start, middle, len(steps[0].rotations)).round().astype(int)
+    knees = None if stride.knees is None else np.tile(stride.knees.mean(0), (len(stride.knees), 1))
+    return _Stride(
+        steps,
+        contacts.at(frames).then_mirrored(),
+        stride.seam / 2,  # a step's end and the next one's beginning share one of their two frames
+        RootDelta(z=stride.delta.length),
+        knees,
+    )
 
 
 def _source_knees(recording: Recording, rig: Rig, cut: LoopCut) -> Array | None:

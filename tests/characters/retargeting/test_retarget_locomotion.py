@@ -18,6 +18,7 @@ from cubeling.characters import (
 )
 from cubeling.characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
 from cubeling.characters.retargeting import Recording, load_recording, make_locomotion
+from cubeling.characters.retargeting.locomotion.cycle import close_loop
 from cubeling.characters.retargeting.locomotion.gait_cycle import ArcPath
 from cubeling.characters.retargeting.measures import facing_error
 from cubeling.characters.retargeting.rig import Rig
@@ -314,3 +315,34 @@ def test_made_clips_look_ahead_though_the_neck_was_recorded_straight(human):
         pitches.append(np.degrees(np.arcsin(rotations.rotate(head, [0.0, 0.0, 1.0])[:, 1])))
     assert -8.0 < pitches[0].mean() < 2.0
     assert np.ptp(pitches[1]) > 20.0
+
+
+@pytest.mark.usefixtures("straight_only")
+def test_steps_of_a_single_limping_stride_are_made_alike(human):
+    walk = exported(human, "Walk", 1.6)
+    poses, limp = walk.clip.poses, np.linspace(0.0, 1.0, len(walk.clip))
+    turns = poses.rotations.copy()
+    for joint in map(human.skeleton.index, ("LeftUpLeg", "RightArm")):
+        turns[:, joint] = rotations.multiply(turns[:, joint], rotations.about("x", limp))
+    limping = replace(walk, clip=replace(walk.clip, poses=replace(poses, rotations=turns)))
+    made = make_locomotion(replace(human, clips={}), [limping])
+    assert not made.recordings[0].warnings  # 7.6 cm apart without
+    clip, skeleton = made.character.clips["Walk"], made.character.skeleton
+    at = clip.in_place.globals(skeleton)[..., :3, 3]
+    left, right = (at[:, skeleton.index(f"{side}Hand"), 2] for side in ("Left", "Right"))
+    assert np.ptp(left) == pytest.approx(np.ptp(right), rel=0.05)
+
+
+@pytest.mark.parametrize(("speed", "gap"), [(1.0, 0.0), (-1.0, 0.2), (0.3, -0.2)])
+def test_a_closed_loop_goes_on_at_its_end_as_it_begins(human, speed, gap):
+    idle = human.clips["idle"]
+    rest, frames = idle.poses[np.zeros(61, int)], np.linspace(0.0, 1.0, 61)
+    rest.translations[:, 1, 0] += gap * frames + speed * frames**2
+    rest.rotations[:, 1] = rotations.multiply(
+        rest.rotations[:, 1], rotations.about("y", gap * frames + speed * frames**2)
+    )
+    loop = close_loop(replace(idle, poses=rest, rate=60.0, loop=False), [rest]).poses
+    for values in (loop.translations, loop.rotations):
+        assert np.allclose(values[0], values[-1], atol=1e-9)
+        before, after = values[-1] - values[-2], values[1] - values[0]
+        assert np.allclose(before, after, atol=0.01)  # 0.033 without
