@@ -255,7 +255,8 @@ def _lsl() -> Finding:
 PHONE_LIBRARIES = ("aiohttp", "cryptography", "segno")
 """What `cubeling serve` needs: the extra [web]."""
 
-BROWSER_PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "firefox-esr", "firefox")
+CHROMIUM, FIREFOX = ("chromium", "chromium-browser", "google-chrome"), ("firefox-esr", "firefox")
+"""What programs of these browsers are called."""
 
 
 def _phone() -> Finding:
@@ -264,9 +265,14 @@ def _phone() -> Finding:
     if absent:
         found = f"no {', '.join(absent)}: cubeling serve does not run"
         return Finding("phone", "missing", found, f"pip install {' '.join(absent)}")
-    browser = next(filter(None, map(shutil.which, BROWSER_PROGRAMS)), None)
+    browser = installed(*CHROMIUM, *FIREFOX)
     tests = "no browser here: tests of the page are left out" if browser is None else browser
     return Finding("phone", "good", f"cubeling serve runs; {tests}")
+
+
+def installed(*programs: str) -> str | None:
+    """Return the path of the first of some programs that is there."""
+    return next(filter(None, map(shutil.which, programs)), None)
 
 
 def _camera() -> Finding:

@@ -3,8 +3,6 @@
 import asyncio
 import base64
 import itertools
-import shutil
-import subprocess
 from contextlib import asynccontextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,13 +10,15 @@ from typing import Any
 
 import aiohttp
 
-PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
+from cubeling.app.commands.look.doctor import CHROMIUM, installed
+from tests.bench.web.browser import running
+
 START_S = 30.0
 
 
 def program() -> str | None:
     """Return the path of Chromium; None where there is none."""
-    return next(filter(None, map(shutil.which, PROGRAMS)), None)
+    return installed(*CHROMIUM)
 
 
 class Tab:
@@ -135,7 +135,6 @@ async def chromium(camera: Path | None = None, language: str = "en"):
     assert found is not None, "there is no Chromium here"
     with TemporaryDirectory(prefix="cubeling-chromium-") as profile:
         arguments = [
-            found,
             "--headless=new",
             "--no-sandbox",
             "--no-first-run",
@@ -154,22 +153,11 @@ async def chromium(camera: Path | None = None, language: str = "en"):
         ]
         if camera is not None:
             arguments.append(f"--use-file-for-fake-video-capture={camera}")
-        process = subprocess.Popen(
-            [*arguments, "about:blank"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
-        try:
-            port_file = Path(profile) / "DevToolsActivePort"
-            for _ in range(round(START_S / 0.05)):
-                if port_file.exists() and port_file.read_text().strip():
-                    break
-                await asyncio.sleep(0.05)
-            port, browser = port_file.read_text().split()
-            async with aiohttp.ClientSession() as session:
-                yield Chromium(session, port, browser)
-        finally:
-            process.terminate()
-            try:
-                process.wait(10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+        port_file = Path(profile) / "DevToolsActivePort"
+        async with (
+            running(
+                found, *arguments, "about:blank", port_file=port_file, start_s=START_S
+            ) as where,
+            aiohttp.ClientSession() as session,
+        ):
+            yield Chromium(session, *where.split())

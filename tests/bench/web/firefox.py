@@ -4,8 +4,6 @@ import asyncio
 import base64
 import itertools
 import json
-import shutil
-import subprocess
 from contextlib import asynccontextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,7 +11,9 @@ from typing import Any
 
 import aiohttp
 
-PROGRAMS = ("firefox-esr", "firefox")
+from cubeling.app.commands.look.doctor import FIREFOX, installed
+from tests.bench.web.browser import running
+
 START_S = 60.0
 
 PREFERENCES = {
@@ -32,7 +32,7 @@ PREFERENCES = {
 
 def program() -> str | None:
     """Return the path of Firefox; None where there is none."""
-    return next(filter(None, map(shutil.which, PROGRAMS)), None)
+    return installed(*FIREFOX)
 
 
 class FirefoxTab:
@@ -103,19 +103,17 @@ async def firefox():
             f"user_pref({name!r}, {str(value).lower()});" for name, value in PREFERENCES.items()
         )
         (Path(profile) / "user.js").write_text("\n".join(lines).replace("'", '"'))
-        process = subprocess.Popen(
-            [found, "--headless", "--no-remote", "--profile", profile,
-             "--remote-debugging-port", "0"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-        try:
-            port_file = Path(profile) / "WebDriverBiDiServer.json"
-            for _ in range(round(START_S / 0.05)):
-                if port_file.exists() and port_file.read_text().strip():
-                    break
-                await asyncio.sleep(0.05)
-            where = json.loads(port_file.read_text())
-            url = f"ws://127.0.0.1:{where['ws_port']}/session"
+        arguments = (
+            "--headless",
+            "--no-remote",
+            "--profile",
+            profile,
+            "--remote-debugging-port",
+            "0",
+        )
+        port_file = Path(profile) / "WebDriverBiDiServer.json"
+        async with running(found, *arguments, port_file=port_file, start_s=START_S) as where:
+            url = f"ws://127.0.0.1:{json.loads(where)['ws_port']}/session"
             async with (
                 aiohttp.ClientSession() as session,
                 session.ws_connect(url, max_msg_size=0) as socket,
@@ -123,10 +121,3 @@ async def firefox():
                 tab = FirefoxTab(socket)
                 said = await tab.start()
                 yield tab, f"{said['browserName']} {said['browserVersion']}"
-        finally:
-            process.terminate()
-            try:
-                process.wait(10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
