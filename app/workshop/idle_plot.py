@@ -7,7 +7,6 @@ import this module.
 from pathlib import Path
 
 import cv2
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,8 +14,7 @@ from matplotlib.patches import FancyArrowPatch
 from numpy.typing import NDArray
 
 from cubeling.app.workshop.moods.colors import CURVE_STYLES, GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
-from cubeling.app.workshop.moods.plot import write_figure
-from cubeling.app.workshop.moods.plot_layout import MATPLOTLIB_STYLE, printable
+from cubeling.app.workshop.moods.plot import titled_figure
 from cubeling.characters import Character
 from cubeling.characters.model import idle_clips, stick_figure
 from cubeling.characters.motion import (
@@ -56,11 +54,8 @@ def save_plot(path: Path, database: IdleDatabase, title: str) -> None:
     AppError
         The file cannot be written.
     """
-    with matplotlib.rc_context(MATPLOTLIB_STYLE):
-        figure = Figure(figsize=SIZE_IN, layout="constrained")
-        figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR, fontsize=15)
+    with titled_figure(path, title, SIZE_IN, 15) as figure:
         draw(figure, database)
-        write_figure(figure, path, title)
 
 
 def draw(figure: Figure, database: IdleDatabase) -> None:

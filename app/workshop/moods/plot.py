@@ -4,7 +4,8 @@ Needs matplotlib, the extra `[plots]`; only `cubeling mood plot` imports this mo
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib
@@ -97,6 +98,26 @@ def write_figure(figure: Figure, path: Path, title: str, vector_dpi: float = PNG
     with whole_file(path, AppError) as partial:
         dpi = PNG_DPI if suffix == ".png" else vector_dpi
         figure.savefig(partial, dpi=dpi, metadata=metadata)
+
+
+@contextmanager
+def titled_figure(
+    path: Path, title: str, size_in: tuple[float, float], title_size: float | None = None
+) -> Iterator[Figure]:
+    """Give an empty figure in our style under a title, and write it when it is drawn.
+
+    `size_in` is its width and height [in], `title_size` that of the title [pt].
+
+    Raises
+    ------
+    AppError
+        The file cannot be written.
+    """
+    with matplotlib.rc_context(MATPLOTLIB_STYLE):
+        figure = Figure(figsize=size_in, layout="constrained")
+        figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR, fontsize=title_size)
+        yield figure
+        write_figure(figure, path, title)
 
 
 def draw(

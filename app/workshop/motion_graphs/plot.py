@@ -5,7 +5,6 @@ Needs matplotlib, the extra `[plots]`; only `cubeling motions` imports this modu
 
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,10 +15,9 @@ from cubeling.app.workshop.moods.colors import (
     BORDER_COLOR,
     CURVE_STYLES,
     SECONDARY_COLOR,
-    TEXT_COLOR,
 )
-from cubeling.app.workshop.moods.plot import write_figure
-from cubeling.app.workshop.moods.plot_layout import MATPLOTLIB_STYLE, printable
+from cubeling.app.workshop.moods.plot import titled_figure
+from cubeling.app.workshop.moods.plot_layout import printable
 from cubeling.characters.motion import (
     DISTANCES,
     WHOLE_BODY,
@@ -47,14 +45,11 @@ def save_plot(path: Path, stored: StoredGraph, title: str) -> None:
     AppError
         The file cannot be written.
     """
-    with matplotlib.rc_context(MATPLOTLIB_STYLE):
-        figure = Figure(figsize=SIZE_IN, layout="constrained")
+    with titled_figure(path, title, SIZE_IN) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.0, 0.9))
         graph = standard_graph(stored)
         _draw_distances(figure, left, stored, graph)
         _draw_connectivity(right, stored)
-        figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR)
-        write_figure(figure, path, title)
 
 
 def _draw_distances(figure: Figure, axes: Axes, stored: StoredGraph, graph: MotionGraph) -> None:

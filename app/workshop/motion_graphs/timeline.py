@@ -9,7 +9,6 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -17,8 +16,8 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from cubeling.app.workshop.moods.colors import GRID_COLOR, SECONDARY_COLOR, TEXT_COLOR
-from cubeling.app.workshop.moods.plot import write_figure
-from cubeling.app.workshop.moods.plot_layout import MATPLOTLIB_STYLE, printable
+from cubeling.app.workshop.moods.plot import titled_figure
+from cubeling.app.workshop.moods.plot_layout import printable
 from cubeling.app.workshop.motion_graphs.transition import FoundTransition
 from cubeling.characters.motion import MotionLibrary
 
@@ -52,11 +51,8 @@ def save_timeline(
     AppError
         The file cannot be written.
     """
-    with matplotlib.rc_context(MATPLOTLIB_STYLE):
-        figure = Figure(figsize=timeline_size_in(library, found), layout="constrained")
+    with titled_figure(path, title, timeline_size_in(library, found)) as figure:
         draw_timeline(figure, library, found)
-        figure.suptitle(printable(title), fontweight="bold", color=TEXT_COLOR)
-        write_figure(figure, path, title)
 
 
 def timeline_size_in(
