@@ -210,7 +210,7 @@ class Stage:
             scene.characters,
             PictureFineness(table, float(matrix[1, 1]), self._quality.max_error_px),
         )
-        mirrored = any(each.skinned.mirrors for each in characters)
+        mirrored = [each for character in characters for each in character.skinned.mirrored]
         return FrameResources(
             context=self._context,
             layers=self._layers,

@@ -223,7 +223,13 @@ def card(
     )
 
 
-def cost(context: moderngl.Context, name: str, frames: int) -> tuple[float, float, float]:
+EYES, ARMOUR, ANY = (0.15, 0.15), (0.25, 0.25), (0.0, 1.0)
+"""Least and greatest roughness of what mirrors the room: the human's eyes, `METAL`, and all."""
+
+
+def cost(
+    context: moderngl.Context, name: str, roughness: tuple[float, float], frames: int
+) -> tuple[float, float, float]:
     """Return CPU times a frame of measuring, of preparing, and of OpenCV's detection [ms]."""
     detector = cv2.aruco.ArucoDetector(
         cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50), cv2.aruco.DetectorParameters()
@@ -236,7 +242,7 @@ def cost(context: moderngl.Context, name: str, frames: int) -> tuple[float, floa
         marks = [time.process_time()]
         room = meter.update(image, step.controls.camera_from_table, light, now)
         marks.append(time.process_time())
-        maps.update(room, now, mirrored=True)
+        maps.update(room, now, [roughness])
         marks.append(time.process_time())
         detector.detectMarkers(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY))
         marks.append(time.process_time())
@@ -342,11 +348,12 @@ def main() -> None:
         )
         add("  half of it", found.half_s, None, "s")
         add("  most from one picture to the next, mean ΔE", found.pop, POP_BAR)
-        add("  the same of 1 % of its pixels", found.worst_pop, None)
-    for name in ("companion", "follow"):
-        measuring, preparing, detecting = cost(context, name, given.frames)
-        add(f"{name}: measuring, of detection", measuring / detecting, None)
-        add(f"{name}: measuring and preparing", (measuring + preparing) / detecting, COST_BAR)
+        add("  the same of 1 % of its pixels", found.worst_pop, POP_BAR)
+    mirrors = {"eyes": EYES, "armour": ARMOUR, "mirrors of any roughness": ANY}
+    for name, (who, roughness) in itertools.product(("companion", "follow"), mirrors.items()):
+        measuring, preparing, detecting = cost(context, name, roughness, given.frames)
+        add(f"{name}, {who}: measuring, of detection", measuring / detecting, None)
+        add("  measuring and preparing", (measuring + preparing) / detecting, COST_BAR)
     for name, who in (("follow", None), ("companion", None), ("companion", "human:metal")):
         ratio = line(context, name, who, given.frames)
         add(f"{name}, {who or 'as it is'}: the line with it over without", ratio, None)

@@ -1,6 +1,7 @@
 """The texels of a cube map, in OpenGL's order, and how light from all of them falls on a surface.
 
-Colours come first: light is (3, texels), of the faces +x, −x, +y, −y, +z, −z, row by row.
+Light is (texels, 4) of float32, of the faces +x, −x, +y, −y, +z, −z, row by row: linear RGB, and 0,
+so that a texel is found at once.
 """
 
 from functools import cache
@@ -62,16 +63,17 @@ def texels_at(vectors: Array, side: int) -> NDArray[np.intp]:
 
 
 def pyramid(planes: NDArray[np.uint8]) -> Floats:
-    """Return the linear light of an environment map in faces of all `SIDES`, (3, texels).
+    """Return the linear light of an environment map in faces of all `SIDES`, (texels, 4).
 
     `planes` are those of `RoomMap`. Each square of four texels has one of their mean in the next
     faces.
     """
-    finest = np.asarray(cv2.LUT(planes, _LINEAR), np.float32)
-    sizes = [(side, 3 * FACES * side) for side in SIDES[1:]]
-    smaller = (cv2.resize(finest, size, interpolation=cv2.INTER_AREA) for size in sizes)
-    levels = [finest, *(np.asarray(each, np.float32) for each in smaller)]
-    return np.concatenate([each.reshape(3, -1) for each in levels], axis=1)
+    red, green, blue = planes.reshape(3, FACES * FACE_PX, FACE_PX)
+    levels = [cv2.LUT(cv2.merge([red, green, blue, np.zeros_like(red)]), _LINEAR)]
+    for side in SIDES[1:]:
+        smaller = (side, FACES * side)
+        levels.append(cv2.resize(levels[-1], smaller, interpolation=cv2.INTER_AREA))
+    return np.concatenate([np.asarray(each, np.float32).reshape(-1, 4) for each in levels])
 
 
 def pyramid_starts() -> tuple[int, ...]:
@@ -88,8 +90,7 @@ def irradiance(light: Floats) -> Array:
     environment maps", SIGGRAPH 2001: the error is 1 % on average.
     """
     start = pyramid_starts()[SIDES.index(HARMONIC_SIDE)]
-    texels = light[:, start : start + FACES * HARMONIC_SIDE**2]
-    return np.asarray(_projection() @ texels.T, np.float64)
+    return np.asarray(_projection() @ light[start : start + FACES * HARMONIC_SIDE**2, :3], float)
 
 
 def harmonics(normals: Array) -> Array:

@@ -5,8 +5,7 @@ Engelhardt and Dachsbacher, 2008), with a rim of one texel for the filter of the
 moderngl writes no smaller levels of a cube map, and a software driver samples flat textures faster.
 """
 
-import math
-from collections.abc import Iterator
+import itertools
 from dataclasses import dataclass
 from functools import cache
 
@@ -21,101 +20,155 @@ from cubeling.characters.rendering.environment.cube_map import (
 )
 from cubeling.characters.skeleton.pose import Array
 
-TILE_SIDES = (96, 48, 24, 16, 16)
-"""Sides of the squares for the roughness 0, ¼, ½, ¾ and 1 [texels], without their rims."""
+Image = NDArray[np.uint8]
 
-SAMPLE_COUNTS = (1, 16, 24, 48, 48)
-"""Directions that each texel takes the mean of, of those that a surface of a roughness mirrors."""
+
+@dataclass(frozen=True)
+class Tile:
+    """The square of one roughness."""
+
+    roughness: float
+
+    side: int
+    """Its side, without the rim [texels]."""
+
+    column: int
+    row: int
+    """Its first texel in the texture, without the rim."""
+
+    samples: int
+    """Directions that each texel takes the mean of, of those that a surface mirrors."""
+
+    @property
+    def box(self) -> tuple[slice, slice]:
+        """Rows and columns in the texture, with the rim."""
+        return (
+            slice(self.row - 1, self.row + self.side + 1),
+            slice(self.column - 1, self.column + self.side + 1),
+        )
+
+
+TILES = (
+    Tile(0.0, 80, 1, 1, 1),
+    Tile(0.25, 48, 1, 83, 16),
+    Tile(0.375, 32, 51, 83, 16),
+    Tile(0.5, 24, 1, 133, 24),
+    Tile(0.75, 16, 27, 133, 48),
+    Tile(1.0, 16, 45, 133, 48),
+)
+"""The squares, in rows. A surface has the nearest one: two for each texel that is drawn would cost
+more than all else there. Of roughness ⅛, what is mirrored is no wider than a texel of the first."""
+
+ROWS = (0, 82, 132, 158)
+"""First row of the texture of each row of squares, and the end of the last."""
+
+HEIGHT, WIDTH = ROWS[-1], 84
+"""Size of the texture."""
+
+STEPS_TO_ONE = 8
+"""Steps of roughness that surfaces tell apart, from 0 to 1."""
 
 PARTS = 6
 """A map is filtered in so many steps, one a picture."""
 
-WIDTH = TILE_SIDES[0] + 2
-HEIGHT = sum(side + 2 for side in TILE_SIDES)
-"""Size of the texture."""
-
-TILES = tuple(
-    (side, sum(before + 2 for before in TILE_SIDES[:number]) + 1)
-    for number, side in enumerate(TILE_SIDES)
-)
-"""Side and first row of each square, without its rim."""
+_STEPS = [
+    min(TILES, key=lambda each: abs(each.roughness - step / STEPS_TO_ONE))
+    for step in range(STEPS_TO_ONE + 1)
+]
 
 
-Image = NDArray[np.uint8]
+def tiles_by_roughness() -> Array:
+    """Return side, first column and first row of the square of each step, (STEPS_TO_ONE + 1, 3).
+
+    >>> tiles_by_roughness()[[0, 1, 2]].tolist()
+    [[80.0, 1.0, 1.0], [80.0, 1.0, 1.0], [48.0, 1.0, 83.0]]
+    """
+    return np.array([(each.side, each.column, each.row) for each in _STEPS], float)
+
+
+def rows_between(least: float, most: float) -> slice:
+    """Return the rows of the texture that surfaces of a range of roughness need.
+
+    >>> rows_between(0.25, 0.3)
+    slice(82, 132, None)
+    """
+    first, last = (_STEPS[int(STEPS_TO_ONE * each + 0.5)].row for each in (least, most))
+    return slice(
+        max(each for each in ROWS if each < first), min(each for each in ROWS if each > last)
+    )
 
 
 @dataclass(frozen=True)
 class _Taps:
     """Of which texels of a pyramid the texels of a square are means."""
 
-    texels: NDArray[np.intp]
-    """(side², samples)."""
+    parts: tuple[NDArray[np.intp], ...]
+    """(samples, texels) of each of `PARTS` of the square."""
 
     weights: Floats
     """(samples,); the sum is 1."""
 
 
 class ReflectionFilter:
-    """Filters one pyramid, a part in each step, so that no picture takes long."""
+    """Filters one pyramid for some rows of the texture, a part in each step.
 
-    def __init__(self, light: Floats) -> None:
-        self._light = light
-        self._tiles = [np.empty((3, side * side), np.float32) for side in TILE_SIDES]
-        self._steps = self._filter()
+    So no picture takes long.
+    """
+
+    def __init__(self, light: Floats, rows: slice) -> None:
+        self._rows = rows
+        self._texels = light.view(np.complex128)[:, 0]  # four floats are taken as one number
+        self._tiles = [
+            (tile, taps, np.empty((tile.side**2, 4), np.float32))
+            for tile, taps in zip(TILES, _taps(), strict=True)
+            if rows.start < tile.row < rows.stop
+        ]
         self.done = 0
         """How many of `PARTS` are filtered."""
 
     def step(self) -> None:
         """Filter the next part."""
-        next(self._steps)
+        for _, taps, filtered in self._tiles:
+            first, end = (len(filtered) * part // PARTS for part in (self.done, self.done + 1))
+            taken = self._texels.take(taps.parts[self.done]).view(np.float32)
+            np.matmul(taps.weights, taken, out=filtered[first:end].reshape(-1))
         self.done += 1
-
-    def _filter(self) -> Iterator[None]:
-        for part in range(PARTS):
-            for tile, taps in zip(self._tiles, _taps(), strict=True):
-                count = tile.shape[1]
-                rows = slice(count * part // PARTS, count * (part + 1) // PARTS)
-                for channel, plane in zip(self._light, tile, strict=True):
-                    plane[rows] = np.take(channel, taps.texels[rows], mode="clip") @ taps.weights
-            yield
 
     @property
     def texture(self) -> Image:
-        """All squares with their rims, (HEIGHT, WIDTH, 4): valid when all is done.
+        """The rows, (rows, WIDTH, 4), of squares with their rims: valid when all is done.
 
         Of linear light, it has the square root, as bytes: a software driver reads them several
         times as fast as floats.
         """
-        texels = np.zeros((HEIGHT, WIDTH, 4), np.uint8)
-        for tile, (side, first) in zip(self._tiles, TILES, strict=True):
-            square = np.sqrt(tile).reshape(3, side, side).transpose(1, 2, 0)
-            values = np.asarray(np.float32(255.0) * square + np.float32(0.5), np.uint8)
-            texels[first - 1 : first + side + 1, : side + 2, :3] = _rimmed(values)
-        return texels
+        texels = np.zeros((self._rows.stop, WIDTH, 4), np.uint8)
+        for tile, _, light in self._tiles:
+            values = np.float32(255.0) * np.sqrt(light) + np.float32(0.5)
+            texels[tile.box] = _rimmed(values.astype(np.uint8).reshape(tile.side, tile.side, 4))
+        return texels[self._rows.start :]
 
 
-def filtered(light: Floats) -> Image:
-    """Return all squares of a pyramid at once, as `ReflectionFilter.texture`."""
-    steps = ReflectionFilter(light)
+def filter_at_once(light: Floats, rows: slice = slice(0, HEIGHT)) -> Image:
+    """Return rows of squares of a pyramid, as `ReflectionFilter.texture`."""
+    steps = ReflectionFilter(light, rows)
     for _ in range(PARTS):
         steps.step()
     return steps.texture
 
 
-def octahedral_directions(side: int, fineness: int = 1) -> Array:
-    """Return unit vectors in the texels of a square, (side², fineness², 3).
+def octahedral_directions(side: int) -> Array:
+    """Return unit vectors of the texels of a square, (side², 3).
 
-    >>> octahedral_directions(1)[0, 0].tolist()
+    >>> octahedral_directions(1)[0].tolist()
     [0.0, 1.0, 0.0]
     """
-    along = (np.arange(side * fineness) + 0.5) * (2.0 / (side * fineness)) - 1.0
+    along = (np.arange(side) + 0.5) * (2.0 / side) - 1.0
     z, x = np.meshgrid(along, along, indexing="ij")
     y = 1.0 - np.abs(x) - np.abs(z)
     below = np.maximum(-y, 0.0)
     points = np.stack([x - np.copysign(below, x), y, z - np.copysign(below, z)], axis=-1)
     points /= np.linalg.norm(points, axis=-1, keepdims=True)
-    blocks = points.reshape(side, fineness, side, fineness, 3).transpose(0, 2, 1, 3, 4)
-    return blocks.reshape(side * side, fineness * fineness, 3)
+    return points.reshape(-1, 3)
 
 
 def _rimmed(square: Image) -> Image:
@@ -128,25 +181,17 @@ def _rimmed(square: Image) -> Image:
 @cache
 def _taps() -> tuple[_Taps, ...]:
     """Return the taps of each square."""
-    mirror = texels_at(octahedral_directions(TILE_SIDES[0], math.isqrt(SAMPLE_COUNTS[0])), SIDES[0])
-    quarters = np.full(mirror.shape[1], 1.0 / mirror.shape[1], np.float32)
-    taps = [_Taps(mirror, quarters)]
-    for number, side in enumerate(TILE_SIDES[1:], 1):
-        roughness = number / (len(TILE_SIDES) - 1)
-        taps.append(
-            _rough_taps(octahedral_directions(side)[:, 0], roughness, SAMPLE_COUNTS[number])
-        )
-    return tuple(taps)
+    return tuple(_taps_of(octahedral_directions(tile.side), tile) for tile in TILES)
 
 
-def _rough_taps(towards: Array, roughness: float, samples: int) -> _Taps:
-    """Return taps of what a surface mirrors into a direction that it faces, (n, 3).
+def _taps_of(towards: Array, tile: Tile) -> _Taps:
+    """Return taps of what a surface mirrors into directions that it faces, (n, 3).
 
     Samples are as dense as the lobe is bright (GGX; Karis, "Real shading in Unreal Engine 4",
     2013), and each is of the faces whose texels are as large as what it stands for (Křivánek and
     Colbert, "Real-time shading with filtered importance sampling", 2008).
     """
-    alpha = roughness**2
+    alpha, samples = max(tile.roughness**2, 1e-4), tile.samples
     number = np.arange(samples) + 0.5
     angle, share = np.pi * (1.0 + np.sqrt(5.0)) * number, number / samples
     cos2 = (1.0 - share) / (1.0 + (alpha**2 - 1.0) * share)
@@ -160,13 +205,18 @@ def _rough_taps(towards: Array, roughness: float, samples: int) -> _Taps:
     across = np.cross(least, towards)
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     frames = np.stack([across, np.cross(towards, across), towards], axis=1)
-    vectors = np.einsum("kl,nlc->nkc", local, frames)
+    vectors = np.einsum("kl,nlc->knc", local, frames)
     solid_angle = 1.0 / (samples * density[kept])
     wanted = np.sqrt(4.0 * np.pi / (6.0 * solid_angle))
     # Finer by half, as the nearest texel is taken.
     level = np.clip(np.ceil(np.log2(SIDES[0] / wanted) - 0.5), 0, len(SIDES) - 1).astype(int)
     texels = np.empty(vectors.shape[:2], np.intp)
     for each, (side, start) in enumerate(zip(SIDES, pyramid_starts(), strict=True)):
-        texels[:, level == each] = start + texels_at(vectors[:, level == each], side)
-    weights = (cos[kept] / cos[kept].sum()).astype(np.float32)
-    return _Taps(texels, weights)
+        texels[level == each] = start + texels_at(vectors[level == each], side)
+    parts = (np.arange(PARTS + 1) * len(towards) // PARTS).tolist()
+    return _Taps(
+        tuple(
+            np.ascontiguousarray(texels[:, first:end]) for first, end in itertools.pairwise(parts)
+        ),
+        (cos[kept] / cos[kept].sum()).astype(np.float32),
+    )

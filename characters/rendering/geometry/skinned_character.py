@@ -113,9 +113,10 @@ class SkinnedCharacter:
         return surfaces[: level.awake - len(level.materials) or None] if self._asleep else surfaces
 
     @property
-    def mirrors(self) -> bool:
-        """Whether any of its surfaces mirrors what is around."""
-        return any(each.mirrors for each in self.surfaces)
+    def mirrored(self) -> tuple[tuple[float, float], ...]:
+        """Least and greatest roughness of each of its surfaces that mirrors what is around."""
+        ranges = (each.mirrored for each in self.surfaces)
+        return tuple(each for each in ranges if each is not None)
 
     @property
     def caster_runs(self) -> tuple[CasterRun, ...]:

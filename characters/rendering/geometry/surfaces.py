@@ -34,8 +34,9 @@ distance from the lamp, and the depths of its hidden sides."""
 VERTEX_LIT = "VERTEX_LIT"
 """Feature of programs that shade vertices, not fragments, for surfaces that allow it."""
 
-ROOM, MIRRORED = "ROOM", "MIRRORED"
-"""Features of programs that light a surface by a map of the room, and that mirror it in there."""
+ROOM, MIRRORED, VERTEX_ROOM = "ROOM", "MIRRORED", "VERTEX_ROOM"
+"""Features of programs that light a surface by a map of the room, that mirror it in there, and that
+find at vertices only what light from all around falls on it."""
 
 MIN_MIRROR_METALNESS, MAX_MIRROR_ROUGHNESS = 0.2, 0.45
 """Metalness from which on a surface mirrors more of the room than its mean light, and roughness
@@ -98,19 +99,25 @@ class Surface:
         shaded alone.
         """
         material = self.material
-        mirror = MIRRORED in wanted and self.mirrors
+        mirror = MIRRORED in wanted and self.mirrored is not None
         plain = self.features <= {"GLOW", SKIN_FEATURE} and not material.double_sided
         plain &= material.roughness >= MIN_VERTEX_ROUGHNESS and not mirror
         left_out = {name for name, kept in ((VERTEX_LIT, plain), (MIRRORED, mirror)) if not kept}
-        return self.features | (wanted - left_out)
+        features = self.features | (wanted - left_out)
+        smooth = not (features & {"BUMPS", "TOON", FACE_FEATURE} or material.double_sided)
+        return features | {VERTEX_ROOM} if ROOM in wanted and smooth else features
 
     @property
-    def mirrors(self) -> bool:
-        """Whether it mirrors more than the mean of what is around it, at least in parts."""
-        material = self.material
+    def mirrored(self) -> tuple[float, float] | None:
+        """Least and greatest roughness with which it mirrors more than the mean of what is around.
+
+        None if it does not.
+        """
+        material, mapped = self.material, "SURFACE" in self.features
         metal = material.metallic >= MIN_MIRROR_METALNESS
-        smooth = material.roughness < MAX_MIRROR_ROUGHNESS or "SURFACE" in self.features
-        return (metal or smooth) and material.toon is None
+        if material.toon or not (metal or mapped or material.roughness < MAX_MIRROR_ROUGHNESS):
+            return None
+        return 0.0 if mapped else material.roughness, material.roughness
 
     def render(
         self, context: moderngl.Context, array: moderngl.VertexArray, both_sides: bool = False

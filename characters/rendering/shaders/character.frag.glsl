@@ -76,6 +76,9 @@ uniform float evenness;
 
 in vec3 toward;
 in float above;
+#ifdef VERTEX_ROOM
+in vec3 falling;            // light from all around
+#endif
 
 out vec4 color;
 #endif
@@ -114,7 +117,11 @@ void main() {
 #else
 #ifdef ROOM
     Reflected light = reflected(albedo, finish.y, finish.x, n, toward, vec3(0.0));
+#ifdef VERTEX_ROOM
+    vec3 around = falling, seen = around;
+#else
     vec3 around = light_of_room_near(n, above), seen = around;
+#endif
 #ifdef MIRRORED
     vec3 way = reflect(-toward, n);
     seen = mirrored_room(place, way, finish.x) * left_near_table(0.5 + 0.5 * way.y, above);

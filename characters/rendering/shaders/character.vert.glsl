@@ -5,6 +5,10 @@ uniform vec3 eye;           // in the table frame
 uniform float height;       // of the character [m]
 #include "inside_cube"
 #include "near_table"
+#ifdef VERTEX_ROOM
+#include "shading"
+#include "room_light"
+#endif
 
 in vec3 position;
 in vec3 normal;
@@ -24,6 +28,9 @@ out vec3 place;             // in the table frame
 #ifdef CUTOFF
 out float covering;
 #endif
+#ifdef VERTEX_ROOM
+out vec3 falling;           // light from all around: it changes little from vertex to vertex
+#endif
 
 void main() {
     toward = normalize(eye - position);
@@ -38,6 +45,9 @@ void main() {
 #endif
 #ifdef CUTOFF
     covering = color.a;
+#endif
+#ifdef VERTEX_ROOM
+    falling = light_of_room_near(normal, above);
 #endif
     clip_to_cube(position);
     gl_Position = clip_from_table * vec4(position, 1.0);

@@ -16,9 +16,11 @@ from cubeling.characters.rendering.environment.cube_map import (
     pyramid,
 )
 from cubeling.characters.rendering.environment.reflections import (
+    HEIGHT,
     PARTS,
     TILES,
-    filtered,
+    WIDTH,
+    filter_at_once,
     octahedral_directions,
 )
 from tests.characters.rendering.room_maps import (
@@ -118,46 +120,56 @@ def test_harmonics_give_the_cosine_mean_of_the_light():
 
 
 def test_a_map_of_one_colour_is_that_at_every_roughness():
-    texels = filtered(pyramid(painted(np.full_like(WHITE, 0.5)).planes))
+    texels = filter_at_once(pyramid(painted(np.full_like(WHITE, 0.5)).planes))
     value = LINEAR_FROM_SRGB[188]
-    for side, first in TILES:
-        tile = texels[first - 1 : first + side + 1, : side + 2, :3]
-        assert np.ptp(tile) == 0
-        assert (tile[0, 0] / 255.0) ** 2 == pytest.approx(value, rel=0.005)
+    for tile in TILES:
+        square = texels[tile.box][..., :3]
+        assert np.ptp(square) == 0
+        assert (square[0, 0] / 255.0) ** 2 == pytest.approx(value, rel=0.005)
+
+
+def test_squares_lie_apart_in_the_texture():
+    taken = np.zeros((HEIGHT, WIDTH), int)
+    for tile in TILES:
+        taken[tile.box] += 1
+        assert taken[tile.box].size == (tile.side + 2) ** 2
+    assert taken.max() == 1
 
 
 def test_rough_surfaces_mirror_a_lobe_around_the_direction():
     lamp = np.array([0.3, 0.5, -0.81])
-    texels = filtered(pyramid(with_card(lamp, (1.0, 1.0, 1.0), 0.98).planes))
+    texels = filter_at_once(pyramid(with_card(lamp, (1.0, 1.0, 1.0), 0.98).planes))
     brightest = []
-    for side, first in TILES:
-        tile = texels[first : first + side, 1 : side + 1, 0].ravel().astype(float)
-        centre = tile.argmax() if side > 16 else None
-        brightest.append(float(tile.max()))
-        if centre is not None:
-            towards = octahedral_directions(side)[centre, 0]
+    for tile in TILES:
+        square = texels[tile.box][1:-1, 1:-1, 0].ravel().astype(float)
+        brightest.append(float(square.max()))
+        if tile.side > 16:
+            towards = octahedral_directions(tile.side)[square.argmax()]
             assert np.degrees(np.arccos(min(towards @ lamp, 1.0))) < 14.0
     assert brightest == sorted(brightest, reverse=True)
 
 
 def test_a_rim_goes_on_where_the_octahedron_does():
-    texels = filtered(pyramid(painted(0.5 + 0.4 * UNIT).planes))
-    side, first = TILES[1]
-    tile = texels[first - 1 : first + side + 1, : side + 2].astype(float)
-    inner = tile[1:-1, 1:-1]
+    texels = filter_at_once(pyramid(painted(0.5 + 0.4 * UNIT).planes))
+    square = texels[TILES[1].box].astype(float)
+    inner = square[1:-1, 1:-1]
     step = np.abs(np.diff(inner, axis=0)).max()
-    for rim, edge in ((tile[0, 1:-1], inner[0]), (tile[1:-1, -1], inner[:, -1])):
+    for rim, edge in ((square[0, 1:-1], inner[0]), (square[1:-1, -1], inner[:, -1])):
         assert np.abs(rim - edge).max() < 1.5 * step
 
 
-def shown_by(maps, room, now, mirrored=True):
-    lighting = maps.update(room, now, mirrored)
+ANY = [(0.0, 1.0)]
+"""Surfaces of any roughness that mirror the room."""
+
+
+def shown_by(maps, room, now):
+    lighting = maps.update(room, now, ANY)
     assert lighting is not None
     return lighting.irradiance[0, 0]
 
 
 def mirrored_by(maps, room, now):
-    lighting = maps.update(room, now, True)
+    lighting = maps.update(room, now, ANY)
     assert lighting is not None
     assert lighting.texture is not None
     return (np.frombuffer(lighting.texture.read(), np.uint8) / 255.0) ** 2
@@ -167,13 +179,13 @@ def test_a_new_map_fades_in_and_never_back(ctx):
     maps = fading.RoomMaps(ctx)
     dark, bright = painted(np.full_like(WHITE, 0.1)), painted(np.full_like(WHITE, 0.8))
     before = shown_by(maps, dark, 0.0)
-    values = [shown_by(maps, bright, 0.04 * (number + 1)) for number in range(30)]
+    values = [shown_by(maps, bright, 0.04 * (number + 1)) for number in range(36)]
     steps = np.diff([before, *values])
     assert values[PARTS - 2] == before  # it is being filtered
     assert values[-1] == pytest.approx(0.8, abs=0.01)
     assert (steps >= 0.0).all()
     assert steps.max() < 1.2 * (values[-1] - before) * 0.04 / fading.FADE_S
-    assert mirrored_by(maps, bright, 1.3).max() == pytest.approx(values[-1], abs=0.01)
+    assert mirrored_by(maps, bright, 1.5).max() == pytest.approx(values[-1], abs=0.01)
     maps.release()
 
 
@@ -188,22 +200,31 @@ def test_a_map_that_comes_during_a_fade_goes_on_from_what_is_shown(ctx):
     maps.release()
 
 
-def test_nothing_is_filtered_where_nothing_mirrors(ctx, monkeypatch):
-    asked: list[object] = []
-    monkeypatch.setattr(fading, "filtered", asked.append)
-    monkeypatch.setattr(fading, "ReflectionFilter", asked.append)
+def test_nothing_is_filtered_where_nothing_mirrors(ctx):
     maps = fading.RoomMaps(ctx)
     for number in range(30):
         room = painted(np.full_like(WHITE, 0.1 + 0.02 * number))
-        lighting = maps.update(room, 0.1 * number, False)
+        lighting = maps.update(room, 0.1 * number, [])
         assert lighting is not None
         assert lighting.texture is None
-    assert not asked
+    assert filter_at_once(pyramid(room.planes), slice(0, 0)).size == 0
+
+
+def test_only_squares_that_a_surface_mirrors_in_are_filtered(ctx):
+    maps, bright = fading.RoomMaps(ctx), painted(np.full_like(WHITE, 0.6))
+    lighting = maps.update(bright, 0.0, [(0.25, 0.3)])
+    assert lighting is not None
+    assert lighting.texture is not None
+    texels = np.frombuffer(lighting.texture.read(), np.uint8).reshape(HEIGHT, WIDTH, 4)
+    written = [bool(texels[tile.box].any()) for tile in TILES]
+    assert written == [tile.roughness in (0.25, 0.375) for tile in TILES]
+    assert mirrored_by(maps, bright, 0.1).max() == pytest.approx(0.6, abs=0.01)
+    maps.release()
 
 
 def test_the_first_mirror_sees_the_newest_map_at_once(ctx):
     maps = fading.RoomMaps(ctx)
-    maps.update(painted(np.full_like(WHITE, 0.3)), 0.0, False)
+    maps.update(painted(np.full_like(WHITE, 0.3)), 0.0, [])
     newest = painted(np.full_like(WHITE, 0.6))
     assert mirrored_by(maps, newest, 0.1).max() == pytest.approx(0.6, abs=0.01)
     maps.release()

@@ -46,6 +46,7 @@ def face_points(side: int, rim: int = 0) -> Array:
     )
 
 
+@cache
 def directions(side: int) -> Array:
     """Return the unit vectors of all texels, (6 · side², 3)."""
     points = face_points(side).reshape(-1, 3)
@@ -106,18 +107,13 @@ def enlarged(faces: NDArray[Number], side: int) -> NDArray[Number]:
 
     (6 · COARSE_PX², 3) → (6 · side, side, 3), where `side` is a multiple of `COARSE_PX`.
     """
-    step = side // COARSE_PX
-    size = (COARSE_PX + 2) * step, (COARSE_PX + 2) * step
-    inner = slice(step, -step)
-    rimmed = faces[_rimmed_texels()]
-    return np.concatenate(
-        [
-            np.asarray(cv2.resize(each, size, interpolation=cv2.INTER_LINEAR), faces.dtype)[
-                inner, inner
-            ]
-            for each in rimmed
-        ]
-    )
+    step, rimmed = side // COARSE_PX, faces[_rimmed_texels()]
+    wide = (COARSE_PX + 2) * step
+    stacked = np.concatenate(rimmed)
+    large = cv2.resize(stacked, (wide, FACES * wide), interpolation=cv2.INTER_LINEAR)
+    # What is mixed of two faces, one above the other, is cut off with the rims.
+    inner = large.reshape(FACES, wide, wide, 3)[:, step:-step, step:-step]
+    return np.asarray(inner.reshape(-1, side, 3), faces.dtype)
 
 
 @cache

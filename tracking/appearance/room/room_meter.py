@@ -61,6 +61,9 @@ MIN_LIGHT = 0.02
 FILL_GAINS = 0.5, 3.0
 """Limits of the light from unseen directions beside that at the edges of what is seen."""
 
+THING_PX = 32
+"""Side of a face for what stands on the table [texels]: as wide as a pixel is from the centre."""
+
 COARSE_RADIUS = np.radians(11.0)
 """How far the edge of a coarse texel is from its middle at most [rad]."""
 
@@ -68,9 +71,14 @@ _LINEAR = LINEAR_FROM_SRGB.astype(np.float32)
 
 
 Seen = tuple[Indices, Floats, Image]
-"""Texels of the map, what share of each is covered, (n, 1), and by which sRGB, (n, 3)."""
+"""Squares of four texels of the map, (n, 4), what share of each is covered, (n, 1, 1), and by which
+sRGB, (n, 1, 3)."""
 
-NOTHING: Seen = np.zeros(0, np.intp), np.zeros((0, 1), np.float32), np.zeros((0, 3), np.uint8)
+NOTHING: Seen = (
+    np.zeros((0, 4), np.intp),
+    np.zeros((0, 1, 1), np.float32),
+    np.zeros((0, 1, 3), np.uint8),
+)
 
 
 class RoomMeter:
@@ -169,7 +177,7 @@ class RoomMeter:
     def _aim(self, camera_from_table: Array, scale: float) -> None:
         """Find where in the picture the places are that light comes from."""
         self._pose = camera_from_table.copy()
-        places = CENTRE_M + _reaches()[:, None] * _directions()
+        places = CENTRE_M + _reaches(ENVIRONMENT_PX)[:, None] * directions(ENVIRONMENT_PX)
         self._texels, pixels, margins = self._in_picture(places)
         self._pixels = ((pixels + 0.5) * scale - 0.5).astype(np.float32)
         soft = SOFT_EDGE * self._projection.size[0]
@@ -191,20 +199,28 @@ class RoomMeter:
         facing = (camera - foot) * (1.0, 0.0, 1.0)
         ways = facing @ (foot - camera) / (rays[1:] @ facing)
         around = camera + ways[:, None] * rays[1:] - CENTRE_M
-        around /= np.linalg.norm(around, axis=1, keepdims=True)
-        middle = around.sum(axis=0) / np.linalg.norm(around.sum(axis=0))
-        wide = np.arccos((around @ middle).min()) + COARSE_RADIUS
-        near = _blocks()[directions(COARSE_PX) @ middle > np.cos(min(wide, np.pi))].ravel()
-        unit = _directions()[near]
+        # The directions between four planes, through the centre and each edge of the rectangle.
+        sides = np.cross(around, np.roll(around, -1, axis=0))
+        sides *= np.copysign(1.0 / np.linalg.norm(sides, axis=1), sides @ around.sum(axis=0))[
+            :, None
+        ]
+        inside = (directions(COARSE_PX) @ sides.T).min(axis=1) > -np.sin(COARSE_RADIUS)
+        near = _blocks(COARSE_PX, THING_PX)[inside].ravel()
+        unit = directions(THING_PX)[near]
         with np.errstate(divide="ignore"):
             distance = float(facing @ (foot - CENTRE_M)) / (unit @ facing)
-        kept = np.flatnonzero((distance > 0.0) & (distance < _reaches()[near]))
+        kept = np.flatnonzero((distance > 0.0) & (distance < _reaches(THING_PX)[near]))
         shown, pixels, _ = self._in_picture(CENTRE_M + distance[kept, None] * unit[kept])
         if not len(shown):
             return NOTHING
         pixels = (pixels + 0.5) * scale - 0.5
-        share = _floats(_sampled(thing.pixels, pixels)[:, None] / np.float32(255.0))
-        return near[kept[shown]], share, _sampled(small, pixels)
+        covered = _sampled(thing.pixels, pixels)
+        there = np.flatnonzero(covered)
+        if not len(there):
+            return NOTHING
+        share = _floats(covered[there, None] / np.float32(255.0))
+        texels = _blocks(THING_PX, ENVIRONMENT_PX)[near[kept[shown[there]]]]
+        return texels, share[:, None], _sampled(small, pixels[there])[:, None]
 
     def _in_picture(self, places: Array) -> tuple[Indices, Array, Array]:
         """Return which places (n, 3) are in the picture, their pixels, and how far from its edge.
@@ -279,23 +295,20 @@ def _from_above() -> Array:
 
 
 @cache
-def _blocks() -> Indices:
-    """Return the numbers of the texels of each coarse one, (6 · COARSE_PX², texels)."""
-    step = ENVIRONMENT_PX // COARSE_PX
-    numbers = np.arange(FACES * ENVIRONMENT_PX**2).reshape(-1, step, COARSE_PX, step)
+def _blocks(coarse: int, fine: int) -> Indices:
+    """Return the numbers of the texels of a fine cube in each of a coarse one.
+
+    They are (6 · coarse², texels) for faces of so many texels along a side.
+    """
+    step = fine // coarse
+    numbers = np.arange(FACES * fine**2).reshape(-1, step, coarse, step)
     return numbers.transpose(0, 2, 1, 3).reshape(-1, step * step)
 
 
 @cache
-def _directions() -> Array:
-    """Return the directions of all texels, (texels, 3)."""
-    return directions(ENVIRONMENT_PX)
-
-
-@cache
-def _reaches() -> Array:
+def _reaches(side: int) -> Array:
     """Return how far what is seen in each texel is, (texels,) [m]: on the table, or around it."""
-    unit = _directions()
+    unit = directions(side)
     below = unit[:, 1] < -CENTRE_M[1] / REACH_M
     distance = np.full(len(unit), REACH_M)
     distance[below] = CENTRE_M[1] / -unit[below, 1]

@@ -64,7 +64,7 @@ class EmptyTable:
         new = cv2.morphologyEx(new, cv2.MORPH_CLOSE, CLOSING)
         if cv2.countNonZero(new) > MAX_NEW * new.size:
             new[:] = 0
-        self._age = np.where(new > 0, np.minimum(self._age, 254) + 1, 0).astype(np.uint8)
+        self._age = np.asarray(cv2.min(cv2.add(self._age, 1), new), np.uint8)  # `new` is 255 or 0
         new[self._age > SETTLING_MAPS] = 0
         cv2.copyTo(small, cv2.bitwise_not(new), self.picture)
         return tuple(_things(np.asarray(new, np.uint8)))
@@ -77,8 +77,10 @@ def _things(new: Image) -> Iterator[StandingThing]:
     for label in order.tolist():
         if stats[label, cv2.CC_STAT_AREA] < MIN_AREA * new.size:
             return
-        pixels = np.asarray(cv2.inRange(labels, label, label), np.uint8)
         x, y, width, height = stats[label, :4].tolist()
+        box = np.s_[y : y + height, x : x + width]
+        pixels = np.zeros_like(new)
+        pixels[box] = cv2.inRange(labels[box], label, label)
         low = y + height - 1
         foot = np.array([float(np.flatnonzero(pixels[low]).mean()), float(low)])
         corners = np.array([(x, y), (x + width - 1, y), (x + width - 1, low), (x, low)], float)
