@@ -4,7 +4,7 @@ import gc
 import os
 import sys
 import time
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import Protocol
 
@@ -80,6 +80,34 @@ FIRST_S = 5.0
 tipped. Whole recordings take ten times as long; `make test-all` computes them."""
 
 
+MakeOnce = Callable[[str, Callable[[Path], object]], Path]
+"""Returns a file of a name; the first process that asks makes it, at the path that it is given."""
+
+
+@pytest.fixture(scope="session")
+def make_once(tmp_path_factory: pytest.TempPathFactory) -> MakeOnce:
+    """Let all processes share what takes long to make."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent  # of all processes
+
+    def find(name: str, make: Callable[[Path], object]) -> Path:
+        path, begun = folder / name, folder / f"{name}.begun"
+        try:
+            begun.touch(exist_ok=False)
+        except FileExistsError:
+            end = time.monotonic() + COMPUTING_S
+            while not path.exists():
+                assert time.monotonic() < end, f"another process did not make {name}"
+                time.sleep(0.1)
+            return path
+        partial = folder / f"partial-{name}"
+        make(partial)
+        return partial.rename(path)
+
+    return find
+
+
 class ComputedSession(Protocol):
     """Returns a bundled recording with every channel, or its first seconds."""
 
@@ -88,32 +116,21 @@ class ComputedSession(Protocol):
 
 
 @pytest.fixture(scope="session")
-def computed_session(tmp_path_factory: pytest.TempPathFactory) -> ComputedSession:
-    """Return a bundled recording with every channel; the first process that asks computes it."""
+def computed_session(make_once: MakeOnce) -> ComputedSession:
+    """Return a bundled recording with every channel."""
     from cubeling.app.running.computing import compute_channels
     from cubeling.app.session.bundled import bundled_session
     from cubeling.app.session.copying import copy_session
 
-    folder = tmp_path_factory.getbasetemp()
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        folder = folder.parent  # of all processes
-
     def find(name: str, seconds: float | None = None) -> Path:
+        def compute(path: Path) -> None:
+            source = bundled_session(name)
+            if seconds is not None:
+                recording, source = source, path.with_name(f"source-{path.name}")
+                copy_session(recording, source, lambda _, at, data: data if at < seconds else None)
+            compute_channels(source, path)
+
         part = name if seconds is None else f"{name}-{seconds:g}s"
-        path, begun = folder / f"{part}.mcap", folder / f"{part}.begun"
-        try:
-            begun.touch(exist_ok=False)
-        except FileExistsError:
-            end = time.monotonic() + COMPUTING_S
-            while not path.exists():
-                assert time.monotonic() < end, f"another process did not compute {part}"
-                time.sleep(0.1)
-            return path
-        source, partial = bundled_session(name), folder / f"{part}-partial.mcap"
-        if seconds is not None:
-            recording, source = source, folder / f"{part}-source.mcap"
-            copy_session(recording, source, lambda _, time, data: data if time < seconds else None)
-        compute_channels(source, partial)
-        return partial.rename(path)
+        return make_once(f"{part}.mcap", compute)
 
     return find

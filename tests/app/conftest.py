@@ -1,6 +1,7 @@
 """A simulated hand that makes `CubeControls`, a command-line runner, and short sessions."""
 
 import dataclasses
+import functools
 import itertools
 import math
 import sys
@@ -24,6 +25,7 @@ from tests.app.scripted import play_script
 from tests.bundled_characters import (
     bundled_characters_are_read_once as bundled_characters_are_read_once,
 )
+from tests.conftest import MakeOnce
 from tests.drawn_once import desks_are_drawn_once as desks_are_drawn_once
 
 FRAME = 1 / 30
@@ -33,8 +35,11 @@ SMALL = 640, 360
 the time that whole ones take."""
 
 
-SHORT_FRAMES = 40
+SHORT_FRAMES = 30
 """Frames of a short session: its cube is found, and the robot has answered."""
+
+LONGER_FRAMES = 40
+"""Frames of one in which there is room to seek, and time to find that a cube is the wrong one."""
 
 
 class Hand:
@@ -105,10 +110,16 @@ def bundled_session() -> Path:
     return bundled_session("companion")
 
 
+load_command_once = functools.cache(cli.load_command)
+"""As a process runs one command, the program itself keeps none. To make one takes as long as a
+step of a session, and hundreds are run here."""
+
+
 @pytest.fixture
 def cubeling(monkeypatch, capsys, tmp_path):
     """Run a command in an empty folder; return its exit code, output and error output."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(cli, "load_command", load_command_once)
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.setattr(progress, "LINE_INTERVAL_S", math.inf)  # on a slow computer too
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
@@ -125,34 +136,35 @@ def cubeling(monkeypatch, capsys, tmp_path):
 
 
 @pytest.fixture(scope="session")
-def scripted_session(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def scripted_session(make_once: MakeOnce) -> Callable[[str], Path]:
     """Return a session of the script of a bundled recording, with every channel."""
-    folder = tmp_path_factory.mktemp("scripts")
 
     def find(name: str) -> Path:
-        path = folder / f"{name}.mcap"
-        if not path.exists():
-            play_script(name, record=path)
-        return path
+        return make_once(f"script-of-{name}.mcap", lambda path: play_script(name, record=path))
 
     return find
 
 
 @pytest.fixture(scope="session")
-def short_session(tmp_path_factory: pytest.TempPathFactory, bundled_session: Path) -> Path:
+def short_session(make_once: MakeOnce, bundled_session: Path) -> Path:
     """The first frames of a bundled session, recorded again with small pictures."""
-    path = tmp_path_factory.mktemp("sessions") / "short.mcap"
-    return _first_frames(bundled_session, SHORT_FRAMES, path)
+    return make_once("short.mcap", lambda path: first_frames(bundled_session, SHORT_FRAMES, path))
 
 
 @pytest.fixture(scope="session")
-def lifting_session(tmp_path_factory: pytest.TempPathFactory, bundled_session: Path) -> Path:
+def longer_session(make_once: MakeOnce, bundled_session: Path) -> Path:
+    """The same with a few more frames."""
+    return make_once("longer.mcap", lambda path: first_frames(bundled_session, LONGER_FRAMES, path))
+
+
+@pytest.fixture(scope="session")
+def lifting_session(make_once: MakeOnce, bundled_session: Path) -> Path:
     """Every other frame of four seconds of a bundled session, in which the cube is lifted."""
-    path = tmp_path_factory.mktemp("sessions") / "lift.mcap"
-    return _first_frames(bundled_session, 120, path, every=2)
+    return make_once("lift.mcap", lambda path: first_frames(bundled_session, 120, path, every=2))
 
 
-def _first_frames(session: Path, count: int, path: Path, every: int = 1) -> Path:
+def first_frames(session: Path, count: int, path: Path, every: int = 1) -> Path:
+    """Record so many frames of a session again, with small pictures; return the file."""
     about = {"scenario": "companion", "cube": "companion"}
     with open_source(str(session)) as source, Recorder(path, about) as recorder:
         encode = frame_encoder("auto", SMALL, source.rate / every)

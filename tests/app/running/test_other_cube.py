@@ -28,9 +28,9 @@ ADVICE = "This is the companion cube: press 3 to play companion"
 
 
 @pytest.fixture(scope="module")
-def pictures(short_session):
+def pictures(longer_session):
     """The companion cube, for a second and more."""
-    with open_source(str(short_session)) as source:
+    with open_source(str(longer_session)) as source:
         return list(source)
 
 
@@ -124,13 +124,13 @@ def test_a_key_changes_the_scenario_unless_it_is_recorded(short_session, tmp_pat
     assert any(step.state.visible for step in screen.steps[16:]) != recorded
 
 
-def test_the_present_scenario_goes_on_with_another_cube_in_view(short_session, tmp_path):
+def test_the_present_scenario_goes_on_with_another_cube_in_view(longer_session, tmp_path):
     mine = tmp_path / "museum.toml"
     text = (CUBES_FOLDER / "companion.toml").read_text("utf-8")
     mine.write_text(text.replace('"companion"', '"museum"'), "utf-8")
     options = SessionOptions(
         scenario="companion",
-        source=str(short_session),
+        source=str(longer_session),
         cubes=(write_other_ids(tmp_path, text), str(mine)),
         robot="none",
     )

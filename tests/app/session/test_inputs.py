@@ -27,7 +27,7 @@ from tests.app.conftest import SHORT_FRAMES
 
 SPOKEN = Path(tests.sessions.__path__[0]) / "spoken.mcap"
 
-START_OVER, OPENED, CLOSED, MARK, HIDDEN, SHOWN, ACTED, FELT = 20, 10, 35, 30, 3, 25, 22, 28
+START_OVER, OPENED, CLOSED, MARK, HIDDEN, SHOWN, ACTED, FELT = 20, 10, 27, 26, 3, 25, 22, 28
 """The frames in which something comes in; one line is said before the character appears."""
 
 

@@ -27,7 +27,7 @@ def test_the_plot_says_what_it_shows_and_in_which_units(history, companion, tmp_
     for expected in ("kiss", "shout", "idle", "observed on the robot"):
         assert expected in words
     assert any(each.startswith("acknowledged") for each in words)  # and how much later
-    assert "Moods of companion.mcap" in words
+    assert f"Moods of {companion.name}" in words
     assert any("scenario companion" in each for each in words)
 
 
