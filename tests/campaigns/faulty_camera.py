@@ -1,5 +1,6 @@
 """Cameras with faults: what each sends instead of pictures, and a phone that has one of them."""
 
+import functools
 import itertools
 import time
 from collections.abc import Callable, Iterator
@@ -23,8 +24,11 @@ SIZE = 640, 360
 Sent = bytes | None
 """A picture as a camera sends it; None if it sends nothing."""
 
-PICTURES = jpegs(60, SIZE)
-"""What the camera sees, again and again."""
+
+@functools.cache
+def pictures() -> list[bytes]:
+    """Return what the camera sees, again and again."""
+    return jpegs(60, SIZE)
 
 
 @dataclass(frozen=True)
@@ -57,7 +61,7 @@ def garbage(number: int) -> bytes:
 
 def usual(number: int) -> bytes:
     """Return a picture."""
-    return PICTURES[number % len(PICTURES)]
+    return pictures()[number % len(pictures())]
 
 
 def _jpeg(image: np.ndarray) -> bytes:

@@ -9,7 +9,6 @@ from typer.testing import CliRunner
 
 from cubeling.app.commands.study.speech import app
 from cubeling.app.errors import AppError
-from cubeling.app.workshop.speech_plot import GestureMark, draw, save_plot
 from cubeling.characters import CharacterError
 from cubeling.characters.speech.speech import Phone, Speech, Word
 from cubeling.characters.speech.textgrid import read_textgrid, textgrid_of, write_textgrid
@@ -81,22 +80,30 @@ def test_a_plot_is_written(recording, tmp_path, suffix):
         run("show", recording, "-o", target)
 
 
-def test_a_silent_recording_is_plotted():
+@pytest.fixture
+def plot():
+    from cubeling.app.workshop import speech_plot  # matplotlib: not for who only collects the tests
+
+    return speech_plot
+
+
+def test_a_silent_recording_is_plotted(plot):
     silent = Speech(np.zeros(8000, np.float32), RATE)
-    labels = [axes.get_ylabel() for axes in draw(silent, "silence").axes]
+    labels = [axes.get_ylabel() for axes in plot.draw(silent, "silence").axes]
     assert labels == ["sound", "pitch [Hz]\nand voicing", "intensity\n[dB]", "accents"]
 
 
-def test_a_script_that_the_font_lacks_is_plotted(tmp_path, speech):
+def test_a_script_that_the_font_lacks_is_plotted(plot, tmp_path, speech):
     words = (Word("你好", 0.3, 1.0), Word("😀$x$", 1.0, 2.0))
-    save_plot(tmp_path / "plot.png", replace(speech, words=words), "你好 😀.wav")
+    plot.save_plot(tmp_path / "plot.png", replace(speech, words=words), "你好 😀.wav")
     assert (tmp_path / "plot.png").stat().st_size > 5000
 
 
-def test_gestures_that_overlap_have_lanes_of_their_own(speech):
+def test_gestures_that_overlap_have_lanes_of_their_own(plot, speech):
     phases = (("preparation", 0.2, 0.4), ("stroke", 0.4, 0.6), ("retraction", 0.6, 1.0))
-    marks = [GestureMark("left", 0.2, 0.5, 1.0, phases), GestureMark("right", 0.5, 0.8, 1.2)]
-    figure = draw(speech, "gestures", [*marks, GestureMark("both", 1.3, 1.5, 1.9)])
+    marks = [plot.GestureMark("left", 0.2, 0.5, 1.0, phases)]
+    marks += [plot.GestureMark("right", 0.5, 0.8, 1.2), plot.GestureMark("both", 1.3, 1.5, 1.9)]
+    figure = plot.draw(speech, "gestures", marks)
     names = [axes.get_ylabel() for axes in figure.axes]
     lanes = figure.axes[names.index("gestures")]
     assert lanes.get_ylim() == (0.0, 2.0)

@@ -6,11 +6,12 @@ from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.synthesis.graphs.building import analyse
 from cubeling.characters.synthesis.graphs.storage import StoredGraph
 from cubeling.characters.synthesis.library import MotionLibrary
+from tests.bundled_characters import bundled_character
 
 
 @pytest.fixture(scope="session")
 def human() -> Character:
-    return Character.load("human")
+    return bundled_character("human")
 
 
 @pytest.fixture(scope="session")

@@ -9,10 +9,10 @@ from collections import defaultdict
 from dataclasses import asdict
 from datetime import datetime
 from itertools import pairwise
+from statistics import NormalDist
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from cubeling.app.session import WizardAct, session_info
 from cubeling.app.workshop.pages.box_plot import box_plot
@@ -37,6 +37,13 @@ from cubeling.app.workshop.study.reporting.tables import gather, write_tables
 from tests.examples import some
 
 RUNS = 1000
+
+
+@pytest.fixture
+def stats():
+    from scipy import stats  # a second: not for who only collects the tests
+
+    return stats
 
 
 def test_the_printed_percentages_of_the_child_study_follow_from_twelve_children():
@@ -103,7 +110,7 @@ ANSWERS = 130
     some([("AU6", "mode", ("animation", "picture")), ("AU1+2", "intensity", ("high", "low"))]),
 )
 def test_simulated_raters_have_the_printed_means_and_find_the_strong_effects(
-    action, factor, levels
+    stats, action, factor, levels
 ):
     rng = np.random.default_rng(2)
     one, other = (rate(action, factor, level, "EXP", ANSWERS, rng) for level in levels)
@@ -124,10 +131,10 @@ def power(one, other, size):
     above = 1 - np.concatenate([[0.0], np.cumsum(one)[:-1]]) - one / 2
     spread = float(one @ (below - chance) ** 2 + other @ (above - chance) ** 2)
     z = (abs(chance - 0.5) - 1.96 * under_none) / math.sqrt(spread / size)
-    return float(stats.norm.cdf(z))
+    return NormalDist().cdf(z)
 
 
-def test_a_planted_effect_is_found_at_the_computed_power_and_none_in_five_per_cent():
+def test_a_planted_effect_is_found_at_the_computed_power_and_none_in_five_per_cent(stats):
     rng = np.random.default_rng(4)
     high, low = faces.shares(faces.latent_of(3.03)), faces.shares(faces.latent_of(2.64))
     one = rng.choice(5, p=high / high.sum(), size=(RUNS, ANSWERS))
@@ -155,7 +162,7 @@ def test_a_first_choice_is_as_frequent_as_printed():
             assert (right > others.max(1)).mean() == pytest.approx(expected, abs=0.02)
 
 
-def test_effects_are_what_they_are_called():
+def test_effects_are_what_they_are_called(stats):
     rng = np.random.default_rng(0)
     one, other = rng.normal(1, 1, 15), rng.normal(0, 1, 15)
     unpaired = compare_unpaired(one, other)
@@ -171,7 +178,7 @@ def test_effects_are_what_they_are_called():
     assert interval(describe([3.0]).interval) == "–"  # one value says nothing of a mean
 
 
-def test_samples_without_spread_are_compared_without_a_warning():
+def test_samples_without_spread_are_compared_without_a_warning(stats):
     same = [[1.0, 2.0], [1.0, 2.0], [1.0, 2.0]]
     assert compare_several(same, paired=True)[1:] == (0.0, 1.0)
     assert compare_several([[1.0], [1.0], [1.0]], paired=False)[1:] == (0.0, 1.0)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from cubeling.characters import Animator, Character, CharacterCommand, RootDelta
+from cubeling.characters import Animator, CharacterCommand, RootDelta
 from cubeling.characters.behaviour.intents import (
     BehaviourIntent,
     FaceIntent,
@@ -22,8 +22,9 @@ from cubeling.characters.control.layers.foot_lock import FootLockLayer
 from cubeling.characters.control.layers.gaze import GazeLayer
 from cubeling.characters.ik.legs import find_legs, find_paws
 from cubeling.characters.skeleton import rotations
+from tests.bundled_characters import bundled_character
 
-HUMAN, VLEO = Character.load("human"), Character.load("vleo")
+HUMAN, VLEO = bundled_character("human"), bundled_character("vleo")
 RATE = 30.0
 LAYERS = (FootLockLayer, StanceLayer, GazeLayer, FaceShiftLayer)
 

@@ -15,12 +15,13 @@ from cubeling.characters.behaviour.realization.speech_kind import estimate, reti
 from cubeling.characters.behaviour.realization.surroundings import NamedPlaces
 from cubeling.characters.behaviour.symbolic_gesture import HandKey, SymbolicGesture
 from cubeling.characters.speech.speech import Utterance, Word
+from tests.bundled_characters import bundled_character
 
 WAVE = SymbolicGesture(
     "WAVE", right=(HandKey(0.0), HandKey(1.0)), one_handed=True, preparation=0.4, stroke=0.8,
     apex=0.5, hold=0.2, retraction=0.5,
 )  # fmt: skip
-HUMAN, VLEO = Character.load("human"), Character.load("vleo")
+HUMAN, VLEO = bundled_character("human"), bundled_character("vleo")
 
 
 class Stage:

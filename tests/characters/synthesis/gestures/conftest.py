@@ -9,13 +9,14 @@ import pytest
 from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.skeleton import rotations
 from cubeling.characters.synthesis.gestures.library import GestureLibrary
+from tests.bundled_characters import bundled_character
 
 RATE = 60.0
 
 
 @pytest.fixture(scope="session")
 def human() -> Character:
-    return Character.load("human")
+    return bundled_character("human")
 
 
 @pytest.fixture(scope="session")
