@@ -57,9 +57,9 @@ def test_a_gesture_moves_what_depends_on_it(cubeling, tmp_path) -> None:
         modified = f'<blendableobject type="modifier"><modifier type="{kind}"/>{own}'
         text = plain.replace(own, f"{modified}</blendableobject>")
         (tmp_path / f"{kind}.xml").write_text(text)
-        assert cubeling("schedule", f"{kind}.xml", "-o", f"{kind}.glb", "--rate", "10")[0] == 0
+        assert cubeling("schedule", f"{kind}.xml", "-o", f"{kind}.glb", "--rate", "5")[0] == 0
     (tmp_path / "plain.xml").write_text(plain)
-    cubeling("schedule", "plain.xml", "-o", "plain.glb", "--rate", "10")
+    cubeling("schedule", "plain.xml", "-o", "plain.glb", "--rate", "5")
     clips = {n: Character.load(tmp_path / f"{n}.glb").clips[n].poses.rotations
              for n in ("plain", "dependentjoints", "selfcollision")}  # fmt: skip
     human = Character.load("human")

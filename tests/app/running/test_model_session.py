@@ -22,7 +22,7 @@ from tests.app.speaking.model.misbehaving import SAYS, model_server
 from tests.app.speaking.test_speaker import BUZZ
 from tests.examples import some
 
-RATE = 30
+RATE = 20
 SOURCE = f"talk?rate={RATE}&size=320x180&frames={7 * RATE}"
 SAID = {3.0: "why is the sky blue", 5.0: "xyzzy"}
 

@@ -95,7 +95,7 @@ def test_two_characters_talk_by_rules_and_do_so_again_in_a_replay(tmp_path, shor
     assert session_parts.check(path, session_info(path).options).identical
 
 
-@pytest.mark.slow(reason="a session is processed again")
+@pytest.mark.full  # a session is processed again, as that of two who talk by rules
 def test_a_session_in_which_several_speak_replays_byte_for_byte_without_a_voice(
     spoken, monkeypatch
 ):

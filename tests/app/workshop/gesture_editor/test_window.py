@@ -13,7 +13,7 @@ SCRIPT = Path(__file__).with_name("window_script.py")
 ROOT = SCRIPT.parents[4]
 
 
-@pytest.mark.slow(reason="a window is opened")
+@pytest.mark.full  # by real keys what `test_session` does without a window
 def test_a_gesture_is_made_and_saved_in_the_window(tmp_path):
     if not VirtualScreen.installed() or shutil.which("xdotool") is None:
         pytest.skip("Xvfb or xdotool is not installed")

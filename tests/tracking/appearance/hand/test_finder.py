@@ -61,8 +61,8 @@ def film() -> tuple[Intrinsics, list[tuple[np.ndarray, np.ndarray]]]:
     return made.intrinsics, [(made.frame(i)[0].image, made.truth(i)) for i in range(25)]
 
 
-@pytest.mark.slow(reason="the frames of a film are drawn")
-@pytest.mark.parametrize("skin", some(["604134", "3f6fc4", "f3e7db"]))
+@pytest.mark.full  # films are drawn; those of other tests have two colours of skin
+@pytest.mark.parametrize("skin", ["604134", "3f6fc4", "f3e7db"])
 def test_hands_of_any_colour_are_found(skin):
     assert overlap_in(HandView(skin, azimuth_deg=-120, seed=3), 25) > 0.8
 
