@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from cubeling.tracking.cube.model import CubeModel
-from cubeling.tracking.geometry.arrays import Floats, Image
+from cubeling.tracking.geometry.arrays import Array, Floats, Image
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.geometry.state import CubeState
 from cubeling.tracking.synthetic import SyntheticOptions
@@ -83,7 +83,7 @@ def _scene(view: HandView, cube: str, rate_hz: float, size: Size) -> SizedScene:
     return SizedScene(view, CubeModel.load(cube), rate_hz, size)
 
 
-def state_at(pose: Floats | None, visible: bool = True) -> CubeState:
+def state_at(pose: Array | None, visible: bool = True) -> CubeState:
     """Return the state of a cube at rest that was found in this pose."""
     still = np.zeros(6)
     return CubeState(visible, pose, still, np.zeros((6, 6)), "markers", (), 0.3, 0.0)
