@@ -72,7 +72,7 @@ class Engine:
             self._library.espeak_SetParameter(parameter, min(max(value, 0), 450), 0)
         write({"rate": self.rate})
         self._samples = 0
-        text = str(request["text"]).replace("\0", " ").encode()
+        text = str(request["text"]).replace("\0", " ").encode(errors="replace")
         self._transcribe(text)
         self._library.espeak_Synth(text, len(text) + 1, 0, 0, 0, UTF8, None, None)
         self._library.espeak_Synchronize()

@@ -10,7 +10,8 @@ from cubeling.affect import Emotion
 from cubeling.app.pipeline.scenario import Outcome, Reply
 from cubeling.app.speaking.speaker import MAX_FAILURES, LiveSpeaker
 from cubeling.characters.speech import DEFAULT_PROFILE
-from cubeling.characters.speech.voices import Voice
+from cubeling.characters.speech.voices import Voice, espeak
+from cubeling.characters.speech.voices.espeak import espeak_installed
 from tests.app.speaking.test_speaker import BUZZ
 
 CALM = Emotion(0.0, 0.0)
@@ -90,3 +91,9 @@ def test_no_reply_of_ten_thousand_ends_the_voice(asked):
         line = asked.answer(text)
         assert line is not None, (number, text)
     assert asked.speaker._thread.is_alive()
+
+
+@pytest.mark.skipif(not espeak_installed(), reason="eSpeak NG is not installed")
+def test_half_a_character_does_not_stop_the_voice():
+    with espeak() as voice:
+        assert voice.say("hi \ud800 you").duration > 0.3
