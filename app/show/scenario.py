@@ -195,7 +195,9 @@ class ShowScenario:
         )
         hint = self.script.summary if controls.visible else "Show me the cube"
         events = (OVER_EVENT,) if self._stage.is_over(now) else ()
-        return Outcome(command, emotion, hint, action, events=events, reply=reply, hush=hush)
+        silent = action != "idle" or not self._stage.speaks(self._who, now)
+        icon = action if silent else "talk"
+        return Outcome(command, emotion, hint, icon, events=events, reply=reply, hush=hush)
 
     def _with_blocks(self, outcome: Outcome, situation: Situation, inputs: Inputs) -> Outcome:
         """Return a decision with what the blocks add, from the frame on that shows the body."""

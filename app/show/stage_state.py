@@ -147,6 +147,13 @@ class StageState:
         own = [e for e in self.ongoing.values() if e.cue.who == who and e.cue.kind == "do"]
         return next((each for each in reversed(own) if now < each.end), None)
 
+    def speaks(self, who: int, now: float) -> bool:
+        """Return whether a character says something at a time [s]."""
+        return any(
+            each.cue.kind == "say" and each.cue.who == who and now < each.end < math.inf
+            for each in self.ongoing.values()
+        )
+
     def coming(self, who: int, now: float) -> ComingAct | None:
         """Return what a character does next by the cues, as far as their times are known."""
         if self.talks or self.since is None:

@@ -74,9 +74,12 @@ class Theatre:
                 said = replace(said, utterance=replace(said.utterance, duration=VOICE_S))
                 if self.voice:
                     self._due[who] = self.hand.frames + 2, said
-            if outcome.icon != self._acting[who]:
-                self._acting[who] = outcome.icon
-                self.events.append((now, who, outcome.icon))
+            action = outcome.command.activity
+            if action != self._acting[who]:
+                self._acting[who] = action
+                self.events.append((now, who, action))
+            if outcome.icon == "talk":
+                self.events.append((now, who, "shows talk"))
         self.over = OVER_EVENT in outcomes[0].events
         return outcomes
 
@@ -98,6 +101,7 @@ def test_antigone_and_creon_in_their_order_and_with_their_overlap(hand):
     first, third = creon
     second, fourth = antigone
     assert first < second < third < fourth
+    assert theatre.times(0, "shows talk")[0] == pytest.approx(first, abs=2 * FRAME)
     (listens,) = theatre.times(1, "nod")
     assert first + VOICE_S - listens == pytest.approx(4.0, abs=2 * FRAME), "4 s before his end"
     (ends,) = [t for t in theatre.times(1, "idle") if t > listens]
