@@ -133,7 +133,10 @@ async def chromium(camera: Path | None = None, language: str = "en"):
     """Run Chromium; `camera` is an .mjpeg or .y4m file that its camera shows again and again."""
     found = program()
     assert found is not None, "there is no Chromium here"
-    with TemporaryDirectory(prefix="cubeling-chromium-") as profile:
+    with TemporaryDirectory(
+        prefix="cubeling-chromium-",
+        ignore_cleanup_errors=True,  # its processes end a bit later
+    ) as profile:
         arguments = [
             "--headless=new",
             "--no-sandbox",
