@@ -110,7 +110,7 @@ OTHERWISE = {
     "app/ui/panels/drawing/style.py": "a font for a library that takes no other",
     "app/ui/playback/scenario_card.py": "files of the program",
     "app/ui/web/certificate.py": "a key that nobody else may read, from its first byte on",
-    "app/ui/page_document.py": "files of the program",
+    "app/ui/web/page.py": "files of the program",
     "app/ui/video_file.py": "written as `.partial`, and renamed",
     "app/workshop/exporting/writing.py": "the unfinished files of `whole_file`",
     "characters/formats/gltf/materials.py": "a picture in memory",

@@ -15,7 +15,7 @@ from cubeling.app.errors import AppError
 if TYPE_CHECKING:
     from cubeling.app.running.instrument import Instrument
     from cubeling.app.running.wizard.plan import WizardPlan
-    from cubeling.app.ui.local_pages import LocalPages
+    from cubeling.app.ui.web.server import WebServer
 
 LSL_SCOPES = ("machine", "link", "site")
 """Who finds our streams and whose streams we find, in LSL's words: this computer, its network, its
@@ -85,12 +85,12 @@ def open_instruments(
     options: InstrumentOptions,
     say: Callable[[str], None],
     plan: WizardPlan | None = None,
-    pages: LocalPages | None = None,
+    server: WebServer | None = None,
 ) -> Iterator[tuple[Instrument, ...]]:
     """Open the instruments that are asked for, and close them at the end.
 
-    `plan` has the buttons of a wizard's desk, unless the options name a file; `pages` serve it,
-    else a server of its own. `say` is called with lines about them. Raises AppError if a library
+    `plan` has the buttons of a wizard's desk, unless the options name a file; `server` serves it,
+    else one of its own. `say` is called with lines about them. Raises AppError if a library
     is missing, or an address cannot be used.
     """
     with ExitStack() as closing:
@@ -122,16 +122,25 @@ def open_instruments(
             if options.lsl_in is not None:
                 opened.append(closing.enter_context(LslIn(options.lsl_in, say)))
         if options.wizard:
+            server = server or _own_server(closing)
             from cubeling.app.running.wizard.desk import WizardDesk
             from cubeling.app.running.wizard.plan import read_wizard_plan
-            from cubeling.app.ui.local_pages import LocalPages
 
             if options.wizard_file is not None:
                 plan = read_wizard_plan(options.wizard_file)
-            desk = WizardDesk(pages or closing.enter_context(LocalPages()), plan)
-            say(f"The wizard's desk: {desk.address}")
+            desk = WizardDesk(server, plan)
+            say(f"The wizard's desk: {' or '.join(desk.addresses)}")
             opened.append(desk)
         yield tuple(opened)
+
+
+def _own_server(closing: ExitStack) -> WebServer:
+    """Open a server for the desk alone; the stack closes it."""
+    from cubeling.app.running.pages import open_pages
+
+    server = open_pages()
+    closing.callback(server.close)
+    return server
 
 
 def check_osc() -> None:

@@ -253,21 +253,21 @@ def _lsl() -> Finding:
 
 
 PHONE_LIBRARIES = ("aiohttp", "cryptography", "segno")
-"""What `cubeling serve` needs: the extra [web]."""
+"""What pages in a browser need: the extra [web]."""
 
 CHROMIUM, FIREFOX = ("chromium", "chromium-browser", "google-chrome"), ("firefox-esr", "firefox")
 """What programs of these browsers are called."""
 
 
 def _phone() -> Finding:
-    """Look for what `cubeling serve` needs, and for a browser for its tests."""
+    """Look for what pages need, and for a browser for their tests."""
     absent = [each for each in PHONE_LIBRARIES if importlib.util.find_spec(each) is None]
     if absent:
-        found = f"no {', '.join(absent)}: cubeling serve does not run"
+        found = f"no {', '.join(absent)}: for cubeling serve, --wizard and study run --page"
         return Finding("phone", "missing", found, f"pip install {' '.join(absent)}")
     browser = installed(*CHROMIUM, *FIREFOX)
     tests = "no browser here: tests of the page are left out" if browser is None else browser
-    return Finding("phone", "good", f"cubeling serve runs; {tests}")
+    return Finding("phone", "good", f"cubeling serve, --wizard and study run --page work; {tests}")
 
 
 def installed(*programs: str) -> str | None:

@@ -29,7 +29,7 @@ from cubeling.robot.network import DEFAULT_SITE
 if TYPE_CHECKING:
     from cubeling.app.running.instrument import Instrument
     from cubeling.app.running.wizard.plan import WizardPlan
-    from cubeling.app.ui.local_pages import LocalPages
+    from cubeling.app.ui.web.server import WebServer
 
 INSTRUMENT_GROUP = "Other programs and instruments (see docs/instruments.md)"
 """Heading of these options in a help."""
@@ -81,7 +81,7 @@ INSTRUMENTS: Mapping[str, tuple[Any, Any]] = {
         _option(
             bool,
             "--wizard",
-            "Serve a page on this computer by which an experimenter drives character and robot.",
+            "Serve a page by which an experimenter drives character and robot.",
         ),
         False,
     ),
@@ -118,18 +118,18 @@ class GivenInstruments:
 
     @contextmanager
     def open(
-        self, plan: WizardPlan | None = None, pages: LocalPages | None = None
+        self, plan: WizardPlan | None = None, server: WebServer | None = None
     ) -> Iterator[tuple[Instrument, ...]]:
         """Open what is asked for, and close it at the end; the errors are one line each.
 
-        A plan has the buttons of a wizard's desk, which it opens; `pages` serve it, or its own.
+        A plan has the buttons of a wizard's desk, which it opens; `server` serves it, or its own.
         """
         from cubeling.app.bridges.opening import open_instruments
 
         options = replace(self.options, wizard=self.options.wizard or plan is not None)
         with (
             publisher(*self.network.values()) as players,
-            open_instruments(options, say, plan, pages) as others,
+            open_instruments(options, say, plan, server) as others,
         ):
             yield (*players, *others)
 

@@ -19,10 +19,22 @@ from cubeling.characters.rendering import QUALITIES
 
 DEFAULT_CAMERA = "camera:0"
 
+PHONE = "phone"
+"""Names the camera of whoever opens the page, as a source."""
+
 PICTURE_GROUP = "The picture"
 FILES_GROUP = "Files"
 STUDY_GROUP = "For a study"
 """Headings of the options that matter less, in the help."""
+
+
+def source_of(asked: str) -> str:
+    """Return the URI of a source that was asked for.
+
+    >>> source_of(PHONE), source_of("camera:0")
+    ('phone:', 'camera:0')
+    """
+    return f"{PHONE}:" if asked == PHONE else asked
 
 
 def describe(scenario: str) -> str:

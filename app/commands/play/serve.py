@@ -1,6 +1,5 @@
 """The command `cubeling serve`."""
 
-import math
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,6 +11,7 @@ from cubeling.app.admission import Token
 from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.commands.play.play_options import (
     FILES_GROUP,
+    PHONE,
     CastOption,
     CharacterOption,
     CodecOption,
@@ -32,32 +32,20 @@ from cubeling.app.commands.play.play_options import (
     describe,
     model_of,
     parts_of,
+    source_of,
 )
 from cubeling.app.commands.play.preference_options import DEFAULT_FILE, GivenPreferences
-from cubeling.app.errors import AppError
 from cubeling.app.pipeline.choices import cast_of, checked_players, robots_of
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario, scenario_names
 
 if TYPE_CHECKING:
-    from contextlib import ExitStack
-
-    import moderngl
-
     from cubeling.app.running.instrument import Instrument
     from cubeling.app.session import SessionOptions
-    from cubeling.app.ui.screen import Screen
     from cubeling.app.ui.web.server import WebServer
-    from cubeling.tracking import FrameSource
-
-PHONE = "phone"
-"""The camera of whoever opens the page."""
 
 DEFAULT_PORT = 8420
 """The usual port; no registered service has it."""
-
-WAIT_S = 0.2
-"""While no page sends pictures, Ctrl-C is heard this often [s]."""
 
 
 @with_instruments
@@ -138,7 +126,7 @@ def serve(
     record_codec, _ = codecs_of(codec, record, None)
     options = SessionOptions(
         scenario=scenario,
-        source=f"{PHONE}:" if source == PHONE else source,
+        source=source_of(source),
         cubes=tuple(cubes or ()),
         character=first,
         others=others,
@@ -155,40 +143,24 @@ def serve(
         **parts_of(rotate_minutes, rotate_mb),
         codec=record_codec,
         folder=folder,
-        patience_s=math.inf
-        if source == PHONE
-        else 30.0,  # a phone may sleep for as long as it likes
     )
     check_output_paths(options)
     check_inputs(options)
     from cubeling.app.scenarios.roles import check_cubes
 
     check_cubes(scenario, options.cubes)
-    with instruments.open() as opened:
-        _serve(options, secret, port, lan, preferences_file, opened)
+    from cubeling.app.running.pages import open_pages
 
-
-def _serve(
-    options: "SessionOptions",
-    token: Token,
-    port: int,
-    lan: bool,
-    preferences_file: Path,
-    instruments: "tuple[Instrument, ...]",
-) -> None:
-    try:
-        from cubeling.app.ui.web.opening import open_server, page_address
-    except ImportError as error:
-        raise AppError(
-            f"a browser needs the library {error.name}: pip install aiohttp cryptography segno"
-        ) from error
-    console = Console(soft_wrap=True, highlight=False)
     with closing(
-        open_server(port, token, lan, preferences_file.parent, own_camera=not _is_phone(options))
+        open_pages(port, secret, lan=lan, folder=preferences_file.parent, camera=source == PHONE)
     ) as server:
-        for line in page_address(server, token):
+        from cubeling.app.ui.web.opening import page_address
+
+        console = Console(soft_wrap=True, highlight=False)
+        for line in page_address(server):
             console.print(line)
-        _play(options, server, preferences_file, instruments)
+        with instruments.open(server=server) as opened:
+            _play(options, server, preferences_file, opened)
 
 
 def _play(
@@ -198,31 +170,13 @@ def _play(
     instruments: "tuple[Instrument, ...]",
 ) -> None:
     # Loaded while the phone is scanning.
-    from dataclasses import replace
-
     from cubeling.app.commands.play.progress import play_session
-    from cubeling.app.running.front_end import FrontEnd
+    from cubeling.app.running.pages import awaited_camera, page_front_end
     from cubeling.app.thread_turns import often_switching
-    from cubeling.app.ui.web.camera import PageCameras
-    from cubeling.app.ui.web.opening import open_page_screen
-    from cubeling.app.ui.web.speaker import PageSpeaker
 
-    cameras = PageCameras(server)
-
-    def open_screen(
-        size: tuple[int, int], folder: Path, closing: "ExitStack"
-    ) -> "tuple[Screen, moderngl.Context]":
-        return open_page_screen(server, cameras, size, folder, closing)
-
-    front_end = FrontEnd(open_screen, lambda mixer: PageSpeaker(mixer, server), cameras.open)
-    camera: FrameSource | None = None
-    if _is_phone(options):
-        while not server.feed.wait_for_first(WAIT_S):
-            pass
-        options = replace(options, source=cameras.uri)
-        camera = cameras.open(options.source, (0, 0))
-    options, kept = GivenPreferences({}, preferences_file).open(options)
-    try:
+    front_end = page_front_end(server)
+    with awaited_camera(options, server) as (options, camera):
+        options, kept = GivenPreferences({}, preferences_file).open(options)
         with often_switching():
             play_session(
                 options,
@@ -232,10 +186,3 @@ def _play(
                 instruments=instruments,
                 preferences=kept,
             )
-    finally:
-        if camera is not None:
-            camera.close()
-
-
-def _is_phone(options: "SessionOptions") -> bool:
-    return options.source.startswith(f"{PHONE}:")

@@ -14,10 +14,13 @@ from rich.text import Text
 from cubeling.app.command_group import CommandGroup
 from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.commands.play.play_options import (
+    PHONE,
     RotateMbOption,
     RotateMinutesOption,
     parts_of,
+    source_of,
 )
+from cubeling.app.commands.play.preference_options import DEFAULT_FILE
 from cubeling.app.counted import quantity
 from cubeling.app.errors import AppError
 from cubeling.app.input_path import check_character
@@ -26,7 +29,7 @@ from cubeling.app.ui.display import has_display
 from cubeling.files import write_whole
 
 if TYPE_CHECKING:
-    from cubeling.app.ui.local_pages import LocalPages
+    from cubeling.app.ui.web.server import WebServer
     from cubeling.app.workshop.study.participants.live_task import TaskSetup
     from cubeling.app.workshop.study.participants.running import StudyDesk
     from cubeling.app.workshop.study.protocols.protocol import Protocol
@@ -84,14 +87,23 @@ def run(
     page: Annotated[
         bool,
         typer.Option(
-            "--page", help="Ask on a page of this computer, in a browser, not in the terminal."
+            "--page", help="Ask and play on a page, in a browser, not in terminal and window."
         ),
+    ] = False,
+    lan: Annotated[
+        bool, typer.Option("--lan", help="Let a phone of your network be that browser, over TLS.")
     ] = False,
     window: Annotated[
         bool, typer.Option("--window", help="Ask in a window, not in the terminal.")
     ] = False,
     source: Annotated[
-        str, typer.Option("--source", "-s", help="The camera.", rich_help_panel=PLAY_GROUP)
+        str,
+        typer.Option(
+            "--source",
+            "-s",
+            help="The camera; with --page, phone is that of whoever opens the page.",
+            rich_help_panel=PLAY_GROUP,
+        ),
     ] = "camera:0",
     robot: Annotated[
         str, typer.Option("--robot", "-r", help="The robot.", rich_help_panel=PLAY_GROUP)
@@ -125,6 +137,8 @@ def run(
         raise AppError("who takes part needs a code: --participant P01, or --simulated 24")
     if page and window:
         raise AppError("questions are asked on a page or in a window: leave out one")
+    if (lan or source == PHONE) and not page:
+        raise AppError("a phone takes part with --page: add that")
     parts = parts_of(rotate_minutes, rotate_mb)
     if not output.parent.is_dir():
         raise AppError(f"there is no folder '{output.parent}' for the study '{output.name}'")
@@ -147,17 +161,23 @@ def run(
         return
     from datetime import datetime
 
-    from cubeling.app.ui.local_pages import LocalPages
     from cubeling.app.workshop.study.participants.live_task import TaskSetup, check_tasks
 
-    place = "page" if page else "window" if window else "terminal"
     try:
         with ExitStack() as closing:
-            pages = closing.enter_context(LocalPages())
-            opened = closing.enter_context(instruments.open(loaded.wizard, pages))
-            setup = TaskSetup(source, robot, pictures, intrinsics, opened, parts)
-            check_tasks(loaded, setup)
-            desk = _open_desk(place, loaded, setup, file, console, pages, closing)
+            server = None
+            if page:
+                from cubeling.app.running.pages import open_pages
+
+                server = open_pages(
+                    lan=lan, folder=DEFAULT_FILE.parent, camera=source == PHONE, study=True
+                )
+                closing.callback(server.close)
+            opened = closing.enter_context(instruments.open(loaded.wizard, server))
+            setup = TaskSetup(source_of(source), robot, pictures, intrinsics, opened, parts)
+            begins = all(person.code != participant for person in study.people)
+            check_tasks(loaded, setup, camera=begins and source != PHONE)
+            desk = _open_desk(loaded, setup, file, console, server, closing, window=window)
             log = study.begin(participant, datetime.now())  # once all is open: it counts as begun
             done = len(log.plan) - len(log.left)
             if done:
@@ -174,31 +194,35 @@ def run(
 
 
 def _open_desk(
-    place: str,
     protocol: "Protocol",
     setup: "TaskSetup",
     file: Path,
     console: Console,
-    pages: "LocalPages",
+    server: "WebServer | None",
     closing: ExitStack,
+    *,
+    window: bool,
 ) -> "StudyDesk":
-    """Open what asks the participant: a terminal, a window or a page; the stack closes it."""
+    """Open what asks the participant: a page, a window or a terminal; the stack closes it."""
     from cubeling.app.workshop.study.protocols.protocol_file import BUNDLED_FOLDER
 
     folder = Path() if file.parent == BUNDLED_FOLDER else file.parent
-    if place == "window":
+    if server is not None:
+        from cubeling.app.ui.web.opening import page_address
+        from cubeling.app.workshop.study.participants.page_desk import PageDesk
+
+        desk = PageDesk(protocol, setup, folder, server)
+        console.print("The participant's page:")
+        for line in page_address(server):
+            console.print(line)
+        return desk
+    if window:
         if not has_display():
             raise AppError("there is no display here for a window: leave out --window, or --page")
         from cubeling.app.workshop.study.window.window_desk import WindowDesk
 
-        desk = WindowDesk(protocol, setup, folder, say=lambda line: console.print(Text(line)))
-        return closing.enter_context(desk)
-    if place == "page":
-        from cubeling.app.workshop.study.participants.page_desk import PageDesk
-
-        page = PageDesk(protocol, setup, folder, pages)
-        console.print(Text.assemble("The participant's page: ", (page.address, "cyan")))
-        return page
+        shown = WindowDesk(protocol, setup, folder, say=lambda line: console.print(Text(line)))
+        return closing.enter_context(shown)
     from cubeling.app.workshop.study.participants.terminal import TerminalDesk
 
     return TerminalDesk(protocol, setup, console)

@@ -13,15 +13,16 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.admission import Token
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import Step
 from cubeling.app.pipeline.table.acts import MAX_PLACE_M, MAX_SAID_CHARS, Act, ActNote
 from cubeling.app.pipeline.table.situation import table_from_cube
 from cubeling.app.running.instrument import Instrument
-from cubeling.app.running.wizard.page import desk_page
 from cubeling.app.running.wizard.plan import WizardPlan, emotion_of
 from cubeling.app.session.acts import act_words
-from cubeling.app.ui.local_pages import LocalPages, PageReply
+from cubeling.app.ui.web.page import document
+from cubeling.app.ui.web.server import WebServer
 from cubeling.characters import Character, CharacterError
 from cubeling.characters.speech import TaggedText
 
@@ -39,6 +40,8 @@ TO_CUBE = "cube"
 
 BESIDE_CUBE_M = 0.1
 """How far from the middle of the cube a character stands that was sent to it [m]."""
+DESK_PATH = "/desk"
+"""Where the server has the page."""
 
 MAX_WAITING = 64
 """Acts that wait for the next frame; of more, the last are left out."""
@@ -62,11 +65,13 @@ class DeskRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class WizardDesk(Instrument):
-    """A page by which an experimenter drives character and robot; an `Instrument`, a `LocalPage`.
+    """A page by which an experimenter drives character and robot; an `Instrument`.
+
+    It has a token of its own: who plays in a browser of the same server cannot reach it.
 
     Parameters
     ----------
-    pages
+    server
         Serves the page; whoever opened it closes it.
     plan
         The buttons.
@@ -78,7 +83,7 @@ class WizardDesk(Instrument):
 
     def __init__(
         self,
-        pages: LocalPages,
+        server: WebServer,
         plan: WizardPlan | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -89,8 +94,11 @@ class WizardDesk(Instrument):
         self._picture: NDArray[np.uint8] | None = None
         self._followed = -math.inf
         self._clear()
-        self.address = pages.open(self)
-        """Where the wizard's browser finds the page."""
+        token = Token.generate()
+        desk = document("desk.html", ["base.css", "desk.css"], ["base.js", "desk.js"])
+        server.open(DESK_PATH, self, token, desk)
+        self.addresses = server.addresses(DESK_PATH, token)
+        """Where the wizard's browser finds the page: here, and in the network if that is let in."""
 
     def _clear(self) -> None:
         self._count = 0
@@ -122,10 +130,8 @@ class WizardDesk(Instrument):
             with self._lock:
                 self._mark(name, taken)
 
-    def get(self, place: str) -> PageReply | None:
-        """Return the page, its state, or the picture of the session."""
-        if not place:
-            return desk_page()
+    def get(self, place: str) -> tuple[str, bytes] | None:
+        """Return the state of the page, or the picture of the session."""
         if place == "state":
             return self._state()
         picture = self._picture
@@ -133,9 +139,9 @@ class WizardDesk(Instrument):
             return None
         height = round(picture.shape[0] * PICTURE_WIDTH_PX / picture.shape[1])
         small = cv2.resize(picture, (PICTURE_WIDTH_PX, height), interpolation=cv2.INTER_AREA)
-        return PageReply("image/jpeg", cv2.imencode(".jpg", small)[1].tobytes())
+        return "image/jpeg", cv2.imencode(".jpg", small)[1].tobytes()
 
-    def post(self, data: bytes) -> PageReply:
+    def post(self, data: bytes) -> tuple[str, bytes]:
         """Take an act, and return the state; what cannot be done is told on the page."""
         try:
             problem = self.ask(msgspec.json.decode(data, type=DeskRequest))
@@ -216,7 +222,7 @@ class WizardDesk(Instrument):
         self._waiting.append(Act("undo", note=ActNote(number)))
         return ""
 
-    def _state(self, problem: str = "") -> PageReply:
+    def _state(self, problem: str = "") -> tuple[str, bytes]:
         now = self._clock()
         with self._lock:
             state = {
@@ -229,7 +235,7 @@ class WizardDesk(Instrument):
                 "problem": problem,
                 **self._doing,
             }
-        return PageReply("application/json", json.dumps(state).encode())
+        return "application/json", json.dumps(state).encode()
 
 
 def _doing(step: Step) -> dict[str, Any]:

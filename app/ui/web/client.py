@@ -53,12 +53,15 @@ class PageClient:
         self,
         socket: web.WebSocketResponse,
         page: str,
+        attempt: int,
         role: Role,
         kind: str,
         limits: WebLimits,
         clock: Callable[[], float],
     ) -> None:
         self.page, self.role = page, role
+        self.attempt = attempt
+        """Which connection of the page this is: a later one has a larger number."""
         self.heard = clock()
         """When it said something last [s]."""
         self._kind, self._fineness = kind, FinenessControl()

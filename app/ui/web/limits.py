@@ -26,8 +26,8 @@ class WebLimits:
     message_bytes: int = 2 << 20
     """Size of a picture from a client [B]: one of 1080 x 1920 has half a megabyte."""
 
-    text_bytes: int = 1 << 10
-    """Size of any other message [B]."""
+    text_bytes: int = 1 << 12
+    """Size of any other message [B]: the answer to a question has at most 2,000 characters."""
 
     messages_per_s: float = 120.0
     """Messages of a client: thirty pictures, and an answer to as many, are half of that."""

@@ -31,16 +31,25 @@ class Said(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A message in JSON from a page."""
 
     do: Literal[
-        "tick", "shown", "camera", "play", "again", "snapshot", "record", "mark"
-    ]  # fmt: skip
-    """What it says: that it is there, that it has shown a picture, that it has a camera; or what
-    the player asks for."""
+        "tick",
+        "shown",
+        "camera",
+        "play",
+        "again",
+        "snapshot",
+        "record",
+        "mark",
+        "answer",
+        "done",
+    ]
+    """What it says: that it is there, that it has shown a picture, that it has a camera; what the
+    player asks for; or what a participant of a study answers, or that a task is done."""
 
     id: int = 0
-    """Number of the picture that was shown."""
+    """Number of the picture that was shown, or of what is answered."""
 
     name: str = ""
-    """The camera ("ab12-back"), or the scenario."""
+    """The camera ("ab12-back"), the scenario, or the answer."""
 
     mirror: bool = False
     """Whether the picture of its camera is to be as in a mirror."""

@@ -18,8 +18,9 @@ from cubeling.app.ui.playback.scenario_card import scenario_picture, summary_of
 from cubeling.app.ui.web.acceptor import Listener
 from cubeling.app.ui.web.camera import PageCameras
 from cubeling.app.ui.web.messages import TILE, pack
+from cubeling.app.ui.web.page import page
 from cubeling.app.ui.web.picture import encoded
-from cubeling.app.ui.web.screen import WebScreen
+from cubeling.app.ui.web.screen import HANDLERS, STUDY_HANDLERS, WebScreen
 from cubeling.app.ui.web.server import LOOPBACK, WebServer
 
 if TYPE_CHECKING:
@@ -30,28 +31,9 @@ TILE_WIDTH_PX = 400
 
 
 def open_server(
-    port: int, token: Token, lan: bool, folder: Path | None, *, own_camera: bool = False
+    port: int, token: Token, *, lan: bool, folder: Path | None, camera: bool, study: bool
 ) -> WebServer:
-    """Open the server; the caller closes it.
-
-    Parameters
-    ----------
-    port
-        The TCP port; 0 for any.
-    token
-        What lets in.
-    lan
-        Whether this computer's network is let in, over TLS.
-    folder
-        Where the certificate is kept; None for nowhere.
-    own_camera
-        Whether the session has a camera of its own, so that pages send none.
-
-    Raises
-    ------
-    AppError
-        The port is in use, or there is no network.
-    """
+    """Open the server; see `running.pages.open_pages`."""
     listeners = [Listener(LOOPBACK, port)]
     fingerprint = ""
     if lan:
@@ -64,13 +46,13 @@ def open_server(
     welcome = {
         "scenarios": [{"name": each, "summary": summary_of(each)} for each in names],
         "rate": SAMPLE_RATE,
-        "camera": not own_camera,
+        "camera": camera,
     }
-    server = WebServer(listeners, token, welcome)
+    server = WebServer(listeners, token, welcome, main=page(study=study))
     server.fingerprint = fingerprint
     if lan:
         # Who plays shows it to one more phone.
-        server.invite(segno.make(_address(server, token), error="l").svg_data_uri(border=2))
+        server.invite(segno.make(server.addresses()[-1], error="l").svg_data_uri(border=2))
     server.tiles = [
         pack(TILE, number, 0.0, encoded(scenario_picture(name, TILE_WIDTH_PX)))
         for number, name in enumerate(names)
@@ -78,14 +60,14 @@ def open_server(
     return server
 
 
-def page_address(server: WebServer, token: Token) -> Iterator[str]:
+def page_address(server: WebServer) -> Iterator[str]:
     """Yield what to print: how a browser finds the page, in Rich's markup."""
-    own = f"http://localhost:{server.ports[0]}/#{token.text}"
-    if not server.fingerprint:
+    own, *others = server.addresses()
+    if not others:
         yield f"Open this in a browser of this computer: [bold cyan]{escape(own)}[/]"
         yield "[dim]A phone? Add [cyan]--lan[/]. Ctrl-C ends.[/]"
         return
-    own_port, address = server.ports[0], _address(server, token)
+    (address,), own_port = others, server.ports[0]
     drawn = io.StringIO()
     segno.make(address, error="l", micro=False).terminal(drawn, compact=True)
     yield escape(drawn.getvalue().rstrip("\n"))
@@ -101,17 +83,8 @@ def page_address(server: WebServer, token: Token) -> Iterator[str]:
     )
 
 
-def _address(server: WebServer, token: Token) -> str:
-    """Return the address of the page in the network."""
-    return f"https://{server.listeners[1].host}:{server.ports[1]}/#{token.text}"
-
-
 def open_page_screen(
-    server: WebServer,
-    cameras: PageCameras,
-    size: tuple[int, int],
-    folder: Path,
-    closing: ExitStack,
+    server: WebServer, size: tuple[int, int], folder: Path, closing: ExitStack, *, study: bool
 ) -> "tuple[WebScreen, moderngl.Context]":
     """Open a session's screen on the pages, and the context to draw in; the stack closes both."""
     from cubeling.characters.rendering import create_context
@@ -120,6 +93,7 @@ def open_page_screen(
     closing.callback(context.release)
     virtual_robot = VirtualRobot(context, virtual_robot_side(size[1]))
     closing.callback(virtual_robot.close)
-    screen = WebScreen(server, lambda: cameras.uri, folder, virtual_robot)
+    cameras, handlers = PageCameras(server), STUDY_HANDLERS if study else HANDLERS
+    screen = WebScreen(server, lambda: cameras.uri, folder, virtual_robot, handlers=handlers)
     closing.callback(screen.close)
     return screen, context

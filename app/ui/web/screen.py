@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -51,10 +51,11 @@ class WebScreen:
         Shown if there is no real robot.
     clock
         Returns the time [s].
+    handlers
+        What players may ask for; None for `HANDLERS`.
     """
 
     attended = True
-    closed = False
 
     def __init__(
         self,
@@ -63,7 +64,10 @@ class WebScreen:
         folder: Path,
         virtual_robot: VirtualRobot | None = None,
         clock: Callable[[], float] = time.monotonic,
+        handlers: "Mapping[str, Handler] | None" = None,
     ) -> None:
+        self.closed = False
+        self._handlers = HANDLERS if handlers is None else handlers
         self._server, self._camera_uri, self._folder = server, camera_uri, folder
         self._virtual_robot, self._clock = virtual_robot, clock
         self._scenarios = scenario_names()
@@ -105,7 +109,8 @@ class WebScreen:
         """Return what players ask of the session; another camera, if they have another one."""
         requests: list[SessionRequest] = []
         for said in self._server.take_requests():
-            requests += HANDLERS[said.do](self, said)
+            if said.do in self._handlers:
+                requests += self._handlers[said.do](self, said)
         camera, now = self._camera_uri(), self._clock()
         if camera and camera != self._status.source and now - self._asked_at > RETRY_S:
             self._asked_at = now
@@ -177,7 +182,7 @@ class WebScreen:
         }  # fmt: skip
         if not known or now - self._told_at >= REPORT_S:
             self._told, self._told_at = told, now
-            self._server.report(told)
+            self._server.tell("status", **told)
 
     def _play(self, said: Said) -> tuple[SessionRequest, ...]:
         if said.name in self._scenarios:
@@ -198,8 +203,15 @@ class WebScreen:
         self._mirrored = said.mirror
         return ()
 
+    def _done(self, _: Said) -> tuple[SessionRequest, ...]:
+        self.closed = True
+        return ()
 
-HANDLERS: dict[str, Callable[[WebScreen, Said], tuple[SessionRequest, ...]]] = {
+
+Handler = Callable[[WebScreen, Said], tuple[SessionRequest, ...]]
+"""Carries out a request of a page."""
+
+HANDLERS: Mapping[str, Handler] = {
     "play": WebScreen._play,
     "again": WebScreen._again,
     "snapshot": WebScreen._snapshot,
@@ -208,3 +220,6 @@ HANDLERS: dict[str, Callable[[WebScreen, Said], tuple[SessionRequest, ...]]] = {
     "mark": lambda screen, said: (MarkMoment(),),
 }
 """What carries out each request of a page."""
+
+STUDY_HANDLERS: Mapping[str, Handler] = {"camera": WebScreen._mirror, "done": WebScreen._done}
+"""The same in a study, whose participants choose nothing, but may end a task that says so."""

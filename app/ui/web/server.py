@@ -2,12 +2,14 @@
 
 import asyncio
 import contextlib
+import queue
 import re
 import threading
 import time
 from collections import deque
-from collections.abc import Awaitable, Callable, Mapping, Sequence
-from typing import cast, get_args
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol, cast, get_args
 from urllib.parse import urlsplit
 
 from aiohttp import web
@@ -34,8 +36,8 @@ TOKEN_PATH = "/token"
 PAGE_PATHS = ("/", "/view", "/window", "/camera")
 """One page, which looks at its address."""
 
-Route = Callable[[web.BaseRequest], Awaitable[web.StreamResponse]]
-"""Answers a request that tells the token, in the loop of the server."""
+MAX_SENT_BYTES = 65_536
+"""Size of what a page posts [B]."""
 
 REFUSED = "the token is missing or wrong\n"
 
@@ -43,10 +45,31 @@ CHECK_EVERY_S = 0.1
 """How often it is looked whom the limits of time let go [s]."""
 
 MAX_REQUESTS = 64
-"""What players have asked and nobody has carried out yet; of more, the oldest are forgotten."""
+"""What players have asked and nobody has carried out yet; what is more is forgotten."""
 
 PAGE_NAME = re.compile(r"[a-z0-9]{4,32}")
+ATTEMPT = re.compile(r"[0-9]{1,16}")
 CAMERA_NAME = re.compile(r"[a-z0-9]{1,16}(-[a-z]{1,8})?")
+
+
+class WebContent(Protocol):
+    """What is served below a path; it is called on threads of the server, which may wait."""
+
+    def get(self, place: str) -> tuple[str, bytes] | None:
+        """Return the media type and the data of what is at a place; None for nothing."""
+        ...
+
+    def post(self, data: bytes) -> tuple[str, bytes] | None:
+        """Take what a page sends, and return the reply; None for what takes nothing."""
+        ...
+
+
+@dataclass(frozen=True)
+class _Opened:
+    """What `WebServer.open` has opened."""
+
+    content: WebContent
+    token: Token
 
 
 class WebServer:
@@ -66,10 +89,8 @@ class WebServer:
         What clients may use.
     clock
         The time [s].
-    documents
-        Further pages, by their paths: anybody may read them.
-    routes
-        What answers at further paths, who tells the token: "Authorization: Bearer TOKEN".
+    main
+        The page that players get; None for `page()`.
 
     Raises
     ------
@@ -85,8 +106,7 @@ class WebServer:
         limits: WebLimits | None = None,
         clock: Callable[[], float] = time.monotonic,
         *,
-        documents: Mapping[str, Document] | None = None,
-        routes: Mapping[str, Route] | None = None,
+        main: Document | None = None,
     ) -> None:
         self.feed = ImageFeed()
         """The pictures of the camera."""
@@ -96,17 +116,17 @@ class WebServer:
         """The scenarios' pictures, as messages."""
         self._token, self._limits, self._clock = token, limits or WebLimits(), clock
         self._welcome = dict(welcome or {})
-        self._documents = {**dict.fromkeys(PAGE_PATHS, page()), **(documents or {})}
-        self._routes = {TOKEN_PATH: self._why_refused, **(routes or {})}
-        self._status: dict[str, object] = {}
-        self._requests: deque[Said] = deque(maxlen=MAX_REQUESTS)
+        self._documents = dict.fromkeys(PAGE_PATHS, main or page())
+        self._opened: dict[str, _Opened] = {}
+        self._kept: dict[str, dict[str, object]] = {"status": {}}
+        self._requests: queue.Queue[Said] = queue.Queue(MAX_REQUESTS)
         self._clients: dict[str, PageClient] = {}
         self._place = CameraPlace(clock)
         self._tags: deque[tuple[bytes, str, float]] = deque(maxlen=64)
         self._acceptor = Acceptor(listeners, self._limits, clock)
         self.ports: list[int] = self._acceptor.ports
         """The port of each listener."""
-        self.listeners = tuple(listeners)
+        self._listeners = tuple(listeners)
         self.fingerprint = ""
         """Of the certificate; "" without TLS."""
         self._loop = asyncio.new_event_loop()
@@ -125,15 +145,49 @@ class WebServer:
         looks = (each.look for each in tuple(self._clients.values()))
         return frozenset(each for each in looks if each is not None)
 
+    def open(
+        self,
+        path: str,
+        content: WebContent,
+        token: Token | None = None,
+        document: Document | None = None,
+    ) -> None:
+        """Serve content below a path, as "/desk", to who tells its token.
+
+        Parameters
+        ----------
+        path, content
+            What is served, and where. Who asks says "Authorization: Bearer TOKEN".
+        token
+            What lets in, for people other than the players; None for the players' own.
+        document
+            The page at that path, which anybody may read; None for none.
+        """
+        self._opened[path] = _Opened(content, token or self._token)
+        if document is not None:
+            self._documents[path] = document
+
+    def addresses(self, path: str = "/", token: Token | None = None) -> list[str]:
+        """Return the addresses of a page: on this computer, and in the network if that is let in.
+
+        `token` lets in; None for the players' own.
+        """
+        secret = (token or self._token).text
+        hosts = ["http://localhost", *(f"https://{each.host}" for each in self._listeners[1:])]
+        found = zip(hosts, self.ports, strict=True)
+        return [f"{host}:{port}{path}#{secret}" for host, port in found]
+
     def invite(self, code: str) -> None:
         """Let pages that come from now on show a code, a picture as data: URL, to other phones."""
         self._welcome["code"] = code
 
-    def take_requests(self) -> list[Said]:
-        """Return what players have asked for since the last call."""
-        found = []
-        while self._requests:
-            found.append(self._requests.popleft())
+    def take_requests(self, wait_s: float = 0.0) -> list[Said]:
+        """Return what players have asked for since the last call; wait for the first [s]."""
+        found: list[Said] = []
+        with contextlib.suppress(queue.Empty):
+            while True:
+                waits = wait_s > 0.0 and not found
+                found.append(self._requests.get(block=waits, timeout=wait_s if waits else None))
         return found
 
     def taken_by(self, jpeg: bytes | None) -> tuple[str, float]:
@@ -149,10 +203,13 @@ class WebServer:
         """Let all pages hear a binary message of sound; a camera beside a screen is silent."""
         self._tell_all(lambda client: client.send(message) if client.look else None)
 
-    def report(self, status: dict[str, object]) -> None:
-        """Tell all pages the status of the session, and those that come later."""
-        self._status = status
-        self._tell_all(lambda client: client.tell(do="status", **status))
+    def tell(self, do: str, **content: object) -> None:
+        """Tell all pages the present state of something, and those that come later.
+
+        `do` names it: "status" is that of the session, "sheet" what a study asks.
+        """
+        self._kept[do] = content
+        self._tell_all(lambda client: client.tell(do=do, **content))
 
     def say(self, words: str) -> None:
         """Show some words on all pages for some seconds."""
@@ -207,33 +264,62 @@ class WebServer:
             return web.Response(body=document.body, headers=document.headers)
         if request.method == "GET" and request.path == SOCKET_PATH:
             return await self._welcome_page(request)
-        route = self._routes.get(request.path)
-        if route is not None:
-            scheme, _, offered = request.headers.get("Authorization", "").partition(" ")
-            if scheme != "Bearer" or not self._token.admits(offered):
+        if request.path == TOKEN_PATH:
+            if not self._tells(request, self._token):
                 return web.Response(status=403, text=REFUSED)
-            return await route(request)
-        return web.Response(status=404, text="there is no such page\n")
+            return web.Response(status=503 if self._has_no_room(request) else 204)
+        root, _, place = request.path[1:].partition("/")
+        opened = self._opened.get(f"/{root}")
+        if opened is None:
+            return web.Response(status=404, text="there is no such page\n")
+        if not self._tells(request, opened.token):
+            return web.Response(status=403, text=REFUSED)
+        return await self._exchange_content(request, opened.content, place)
 
-    async def _why_refused(self, _: web.BaseRequest) -> web.StreamResponse:
-        return web.Response(status=503 if self._is_full else 204)
+    async def _exchange_content(
+        self, request: web.BaseRequest, content: WebContent, place: str
+    ) -> web.StreamResponse:
+        """Answer who knows the token of some content; nothing of it runs in the loop."""
+        if request.method == "POST":
+            if not 0 < (request.content_length or 0) <= MAX_SENT_BYTES:
+                return web.Response(status=413, text="too much, or of no length\n")
+            found = await asyncio.to_thread(content.post, await request.read())
+        else:
+            found = await asyncio.to_thread(content.get, place)
+        self._acceptor.admit(request.protocol)
+        if found is None:
+            return web.Response(status=404, text="there is no such thing\n")
+        kind, data = found
+        headers = {"Content-Type": kind, "Cache-Control": "no-store"}
+        return web.Response(body=data, headers=headers)
 
-    @property
-    def _is_full(self) -> bool:
-        return len(self._clients) >= self._limits.clients
+    def _tells(self, request: web.BaseRequest, token: Token) -> bool:
+        """Return whether a request tells a token."""
+        scheme, _, offered = request.headers.get("Authorization", "").partition(" ")
+        return scheme == "Bearer" and token.admits(offered)
+
+    def _has_no_room(self, request: web.BaseRequest) -> bool:
+        """Return whether there are too many pages for one more."""
+        full = len(self._clients) >= self._limits.clients
+        return full and request.query.get("page") not in self._clients
 
     async def _welcome_page(self, request: web.BaseRequest) -> web.StreamResponse:
         """Open a WebSocket for a page that knows the token; nothing of others is read."""
         offered = [each.strip() for each in
                    request.headers.get("Sec-WebSocket-Protocol", "").split(",")]  # fmt: skip
-        name, role = request.query.get("page", ""), request.query.get("role", "")
+        name, role, attempt = (request.query.get(each, "") for each in ("page", "role", "attempt"))
         origin = urlsplit(request.headers.get("Origin", "")).netloc
         known = len(offered) == 2 and self._token.admits(offered[1])
         if not known or origin not in ("", request.host):
             return web.Response(status=403, text=REFUSED)
-        if role not in get_args(Role) or not PAGE_NAME.fullmatch(name):
+        named = PAGE_NAME.fullmatch(name) and ATTEMPT.fullmatch(attempt)
+        if role not in get_args(Role) or not named:
             return web.Response(status=400, text="this is no page of ours\n")
-        if name not in self._clients and self._is_full:
+        before = self._clients.get(name)
+        if before is not None and before.attempt > int(attempt):
+            # It was held up on its way, and the page has given it up.
+            return web.Response(status=409, text="this page is connected already\n")
+        if self._has_no_room(request):
             return web.Response(status=503, text="there are too many pages\n")
         opened = web.WebSocketResponse(
             protocols=(PROTOCOL,),
@@ -245,7 +331,9 @@ class WebServer:
         self._acceptor.admit(request.protocol)
         cutout = request.query.get("background") == "none"
         kind = "cards" if role in PLAYER_ROLES else "cutout" if cutout else "plain"
-        client = PageClient(opened, name, cast(Role, role), kind, self._limits, self._clock)
+        client = PageClient(
+            opened, name, int(attempt), cast(Role, role), kind, self._limits, self._clock
+        )
         await self._exchange(client)
         return opened
 
@@ -255,7 +343,8 @@ class WebServer:
         if before is not None:  # the same page, whose connection was cut
             before.leave("this page is connected again")
         client.tell(do="welcome", **self._welcome)
-        client.tell(do="status", **self._status)
+        for do, content in self._kept.items():
+            client.tell(do=do, **content)
         self._place.join(client)
         if client.role in PLAYER_ROLES:
             for tile in self.tiles:
@@ -281,9 +370,13 @@ class WebServer:
             if self._place.ask(client, take=said.take):
                 self.camera = said.name
                 self.feed.begin()
-                self._requests.append(said)
+                self._ask(said)
         elif client.role in PLAYER_ROLES:
-            self._requests.append(said)
+            self._ask(said)
+
+    def _ask(self, said: Said) -> None:
+        with contextlib.suppress(queue.Full):
+            self._requests.put_nowait(said)
 
     def _see(self, client: PageClient, number: int, taken: float, jpeg: bytes) -> None:
         client.tell(do="got", id=number)

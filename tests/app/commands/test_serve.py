@@ -4,6 +4,10 @@ import socket
 import sys
 from contextlib import closing
 
+import pytest
+
+from cubeling.app.bridges.opening import InstrumentOptions, open_instruments
+from cubeling.app.errors import AppError
 from cubeling.app.ui.web.server import LOOPBACK
 
 
@@ -23,6 +27,14 @@ def test_without_its_libraries_it_says_what_to_install(cubeling, monkeypatch):
     code, _, err = cubeling("serve")
     assert code == 2
     assert "pip install aiohttp cryptography segno" in err
+
+
+def test_a_wizards_desk_says_so_too(monkeypatch):
+    monkeypatch.delitem(sys.modules, "cubeling.app.ui.web.opening", raising=False)
+    monkeypatch.setitem(sys.modules, "segno", None)
+    asked = InstrumentOptions(wizard=True)
+    with pytest.raises(AppError, match="segno"), open_instruments(asked, print):
+        pass
 
 
 def test_a_port_in_use_is_refused(cubeling):

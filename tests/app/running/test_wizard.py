@@ -4,6 +4,7 @@ import asyncio
 import json
 import urllib.error
 import urllib.request
+from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.table.acts import Act, ActNote
 from cubeling.app.running.opening import open_session
+from cubeling.app.running.pages import open_pages
 from cubeling.app.running.replay_check import check_session
 from cubeling.app.running.runner import run
 from cubeling.app.running.wizard.desk import QUIET_S, DeskRequest, WizardDesk
@@ -19,7 +21,6 @@ from cubeling.app.running.wizard.plan import WizardPlan, read_wizard_plan
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.acts import wizard_acts
 from cubeling.app.session.inputs import RecordedInputs
-from cubeling.app.ui.local_pages import LocalPages
 from cubeling.app.ui.screen import NullScreen
 from cubeling.characters import Character
 from tests.bench.web.chromium import chromium, program
@@ -43,8 +44,8 @@ def clock():
 
 @pytest.fixture
 def desk(clock):
-    with LocalPages() as pages:
-        yield WizardDesk(pages, PLAN, clock)
+    with closing(open_pages()) as server:
+        yield WizardDesk(server, PLAN, clock)
 
 
 def played(desk, clock, session, record, asked):
@@ -197,23 +198,33 @@ def test_to_the_cube_leads_beside_it_wherever_it_is(desk, clock):
         assert desk._waiting[-1].note.number == len(desk._waiting)
 
 
-def test_the_page_is_for_who_knows_its_address_and_says_what_is_wrong(desk, clock):
+def test_the_page_is_for_who_knows_its_token_and_says_what_is_wrong(desk, clock):
     desk._followed = clock.now
+    page, token = desk.addresses[0].split("#")
 
-    def fetch(address, data=None):
-        with urllib.request.urlopen(address, data, timeout=5) as reply:
+    def fetch(path="", data=None, token=token):
+        headers = {"Authorization": f"Bearer {token}"}
+        request = urllib.request.Request(page + path, data, headers)
+        with urllib.request.urlopen(request, timeout=5) as reply:
             return reply.read(), reply.headers
 
-    document, headers = fetch(desk.address)
+    document, headers = fetch()
     assert b"The wizard's desk" in document
     assert "script-src 'sha256-" in headers["Content-Security-Policy"]
-    state = json.loads(fetch(desk.address, b'{"do": "say", "name": "Hello!"}')[0])
+    state = json.loads(fetch("", b'{"do": "say", "name": "Hello!"}')[0])
     assert [act["name"] for act in state["acts"]] == ["Hello!"]
     for data in (b"{", b'{"do": "fly"}', b'{"do": "say", "more": 1}', b"\xff"):
-        assert "no request" in json.loads(fetch(desk.address, data)[0])["problem"]
-    for wrong in (desk.address[:-1], f"{desk.address}/picture", f"{desk.address}/x"):
-        with pytest.raises(urllib.error.HTTPError, match="404"):
-            fetch(wrong)
+        assert "no request" in json.loads(fetch("", data)[0])["problem"]
+    for path, secret, why in (
+        ("/picture", token, "404"),
+        ("/x", token, "404"),
+        ("/state", token[:-1], "403"),
+        ("/state", "", "403"),
+    ):
+        with pytest.raises(urllib.error.HTTPError, match=why):
+            fetch(path, token=secret)
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        fetch("", b'{"do": "say", "name": "Hello!"}', token="")
 
 
 def test_buttons_come_from_a_file_or_from_what_the_character_can_do(tmp_path):
@@ -250,7 +261,7 @@ def test_a_browser_has_the_buttons_and_takes_clicks_keys_and_places(desk, clock)
     async def use():
         async with chromium() as browser:
             tab = await browser.tab()
-            await tab.open(desk.address)
+            await tab.open(desk.addresses[0])
             await tab.until("document.querySelectorAll('#buttons button').length > 20")
             press = "document.dispatchEvent(new KeyboardEvent('keydown', {key: '%s'}))"
             await tab.run(press % " ")
@@ -261,7 +272,7 @@ def test_a_browser_has_the_buttons_and_takes_clicks_keys_and_places(desk, clock)
             await tab.until("document.querySelectorAll('#acts li').length == 3")
             # The middle of the right half of the table: 16 cm to the right.
             await tab.run(
-                "{ const b = find('table').getBoundingClientRect(); find('table').dispatchEvent("
+                "{ const b = $('table').getBoundingClientRect(); $('table').dispatchEvent("
                 "new MouseEvent('click', {clientX: b.left + 0.75 * b.width, "
                 "clientY: b.top + 0.5 * b.height, bubbles: true})) }"
             )

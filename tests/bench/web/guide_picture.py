@@ -1,7 +1,6 @@
 """The pictures of the guides about pages: a phone that plays, a study on a phone, the desk."""
 
 import asyncio
-import re
 from pathlib import Path
 
 import cv2
@@ -49,7 +48,7 @@ async def picture(folder: Path) -> None:
             await tab.run("$('games').close()")
             desk = await browser.tab()
             await desk.resize(1280, 800)
-            await desk.open(re.search(r"http\S+/desk#\S+", served.log.read_text())[0])
+            await desk.open(served.desk)
             await desk.until("!$('picture').hidden && state.groups?.length")
             for key in (" ", "1"):
                 await desk.run(

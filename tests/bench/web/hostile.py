@@ -62,12 +62,12 @@ class Player:
 
 
 def _url(served: Served, page: str) -> str:
-    return f"http://127.0.0.1:{served.port}/socket?role=play&page={page}"
+    return f"http://127.0.0.1:{served.port}/socket?role=play&attempt=1&page={page}"
 
 
 async def _attack(port: int, session: aiohttp.ClientSession, kind: int) -> None:
     """Misbehave once, in one of ten ways."""
-    url = f"http://127.0.0.1:{port}/socket?role=play&page=evil{kind}"
+    url = f"http://127.0.0.1:{port}/socket?role=play&attempt=1&page=evil{kind}"
     if kind < 4:  # no token
         async with session.ws_connect(url, protocols=("cubeling", "wrong-token")):
             raise AssertionError("a stranger was let in")

@@ -1,4 +1,4 @@
-"""Runs `cubeling serve` beside a benchmark."""
+"""Runs `cubeling serve`, or another command that serves pages, beside a benchmark."""
 
 import asyncio
 import re
@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 from contextlib import asynccontextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
@@ -25,13 +25,23 @@ class Served:
     """A running server."""
 
     process: subprocess.Popen[bytes]
-    port: int
     folder: Path
-    output: str = field(default="")
+    log: Path
+    """What it has printed."""
+    address: str = ""
+    output: str = ""
+    """The same at the end, with its summary."""
 
     @property
-    def address(self) -> str:
-        return self.at(self.port)
+    def port(self) -> int:
+        return int(self.address.partition("localhost:")[2].partition("/")[0])
+
+    @property
+    def desk(self) -> str:
+        """The address of the wizard's desk."""
+        found = re.search(r"http://localhost\S+/desk#\S+", self.log.read_text())
+        assert found, "it was started with --wizard"
+        return found[0]
 
     def at(self, port: int, path: str = "/") -> str:
         """Return the address of a page at another port, as of a proxy."""
@@ -44,28 +54,25 @@ class Served:
 
 
 @asynccontextmanager
-async def serving(folder: Path, *options: str):
-    """Run the server until the block ends; `output` then has its summary."""
+async def running(folder: Path, *command: str):
+    """Run a command that serves pages, in a folder, until the block ends or it does."""
     log = folder / "serve.log"
     with log.open("w") as out:
         process = subprocess.Popen(
-            [
-                *(sys.executable, "-c", "from cubeling.app.entry import main; main()"),
-                *("serve", "--port", "0"),
-                *("--token", TOKEN.text, "--preferences", str(folder / "preferences.toml")),
-                *("--folder", str(folder), *options),
-            ],
+            [sys.executable, "-c", "from cubeling.app.entry import main; main()", *command],
             stdout=out,
             stderr=out,
+            cwd=folder,
         )
         try:
+            found = None
             for _ in range(round(READY_S / 0.05)):
-                found = re.search(r"localhost:(\d+)/#", log.read_text())
+                found = re.search(r"http://localhost:\d+/#\S+", log.read_text())
                 if found or process.poll() is not None:
                     break
                 await asyncio.sleep(0.05)
             assert found, log.read_text()
-            served = Served(process, int(found[1]), folder)
+            served = Served(process, folder, log, found[0])
             yield served
         finally:
             process.send_signal(signal.SIGINT)
@@ -75,6 +82,15 @@ async def serving(folder: Path, *options: str):
                 process.kill()
                 process.wait()
     served.output = log.read_text()
+
+
+def serving(folder: Path, *options: str):
+    """Run `cubeling serve` until the block ends."""
+    return running(
+        folder,
+        *("serve", "--port", "0", "--token", TOKEN.text),
+        *("--preferences", str(folder / "preferences.toml"), "--folder", str(folder), *options),
+    )
 
 
 def line_times_ms(output: str) -> tuple[float, float]:

@@ -1,8 +1,10 @@
+"use strict";
 /* What every page needs: its parts, its address, a store, and words that pass. */
 const $ = id => document.getElementById(id);
 const now = () => performance.now() / 1000;
-const query = new URLSearchParams(location.search), token = location.hash.slice(1);
-const icon = name => `<svg aria-hidden="true"><use href="#i-${name}"/></svg>`;
+const query = new URLSearchParams(location.search), token = location.hash.slice(1) || "none";
+const icon = name => `<svg viewBox="0 0 24 24" aria-hidden="true"><use href="#i-${name}"/></svg>`;
+const ask = (path, more) => fetch(path, {cache: "no-store", headers: {Authorization: `Bearer ${token}`}, ...more});
 
 function random(length) {
   const bytes = crypto.getRandomValues(new Uint8Array(length));
@@ -32,4 +34,4 @@ function toast(words) {
   clearTimeout(silent);
   silent = setTimeout(() => $("words").classList.remove("on"), 3000);
 }
-document.documentElement.lang = language;
+addEventListener("hashchange", () => location.reload()); // a new link in the same tab

@@ -133,7 +133,7 @@ function send(jpeg, taken) {
 const awake = () => navigator.wakeLock?.request("screen").catch(() => { });
 document.addEventListener("visibilitychange", () => {
   if (document.hidden || !playing) return;
-  heard = Math.min(heard, now() - SILENT_S / 2);
+  tried = heard = Math.min(heard, now() - SILENT_S / 2);
   if (live()) video.play().catch(() => { });
   followPlace();
   awake();

@@ -34,8 +34,8 @@ $("go").onclick = () => {
 };
 document.addEventListener("click", () => playing && openSound()); // browsers want a touch first
 $("retry").onclick = () => {
+  taking = troubles.has("taken");
   connect();
-  followPlace();
 };
 
 function showStatus() {
@@ -80,7 +80,7 @@ function listGames() {
 
 function markGame() {
   const chosen = session.scenario || "companion", games = [...$("games").lastElementChild.children];
-  for (const each of games) each.setAttribute("aria-pressed", each.dataset.name === chosen);
+  for (const each of games) each.setAttribute("aria-pressed", each.autofocus = each.dataset.name === chosen);
   const place = Math.max(games.findIndex(each => each.dataset.name === chosen), 0);
   if (tiles[place]) $("shot").style.backgroundImage = `url(${tiles[place]})`;
 }
@@ -108,8 +108,9 @@ function showRole() {
   $("role").append(T[seen] + (elsewhere ? `: ${T.other}` : ""));
   $("role").hidden = role === "view" || !welcome;
   document.body.dataset.role = role;
+  trouble("taken", Boolean(role === "camera" && playing && elsewhere));
   for (const [name, each] of Object.entries(roles)) {
-    each.setAttribute("aria-pressed", name === seen);
+    each.setAttribute("aria-pressed", each.autofocus = name === seen);
     each.hidden = !welcome?.camera && name !== "window";
   }
   $("invitation").textContent = screen ? T.watch : T.invite;
@@ -126,7 +127,7 @@ for (const each of ["games", "roles"]) {
 }
 
 /* What the page needs of who plays, the most important first. */
-const TROUBLES = {code: "code", full: "wait", lost: "wait", insecure: "nocamera", denied: "nocamera", gone: "nocamera"};
+const TROUBLES = {code: "code", full: "wait", lost: "wait", taken: "camera", insecure: "nocamera", denied: "nocamera", gone: "nocamera"};
 const troubles = new Set();
 function trouble(name, there = true) {
   there ? troubles.add(name) : troubles.delete(name);
@@ -137,6 +138,7 @@ function trouble(name, there = true) {
   [box.querySelector("h2").textContent, box.querySelector("p").textContent] = T[first];
 }
 
+document.documentElement.lang = language;
 $("go").setAttribute("aria-label", T.go);
 $("retry").setAttribute("aria-label", T.again);
 $("more").textContent = T.more;

@@ -10,6 +10,7 @@ from typing import Any
 
 from cubeling.app.output_path import later_parts
 from cubeling.app.pipeline.step import Step
+from cubeling.app.running.front_end import FrontEnd
 from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.option_checks import check_inputs
@@ -25,7 +26,7 @@ from cubeling.app.workshop.study.protocols.goals import (
 )
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
 from cubeling.app.workshop.study.protocols.protocol import Protocol, Settings, StudyTask
-from cubeling.tracking import open_source
+from cubeling.tracking import FrameSource, open_source
 
 
 class _TaskOverError(Exception):
@@ -106,11 +107,22 @@ class LiveDesk:
             participant=log.code,
             condition=step.condition,
         )
-        return play_task(options, task, self._setup.instruments), record.name
+        return self._play(options, task), record.name
+
+    def _play(self, options: SessionOptions, task: StudyTask) -> TaskResult:
+        """Play a task in a window of its own."""
+        return play_task(options, task, self._setup.instruments)
 
 
-def check_tasks(protocol: Protocol, setup: TaskSetup) -> None:
+def check_tasks(protocol: Protocol, setup: TaskSetup, *, camera: bool = True) -> None:
     """Refuse what tasks cannot be played with, before a participant has begun.
+
+    Parameters
+    ----------
+    protocol, setup
+        See `LiveDesk`.
+    camera
+        Whether the camera is there before the participant is, so that it can be tried.
 
     Raises
     ------
@@ -120,17 +132,22 @@ def check_tasks(protocol: Protocol, setup: TaskSetup) -> None:
     for task in protocol.tasks.values():
         for settings in protocol.conditions.values() or (Settings(),):
             check_inputs(setup.options(task, settings))
-    if protocol.tasks:
+    if protocol.tasks and camera:
         with open_source(setup.source):
             pass
 
 
 def play_task(
-    options: SessionOptions, task: StudyTask, instruments: Sequence[Instrument] = ()
+    options: SessionOptions,
+    task: StudyTask,
+    instruments: Sequence[Instrument] = (),
+    source: FrameSource | None = None,
+    front_end: FrontEnd | None = None,
 ) -> TaskResult:
     """Play a task until its goal is reached, its time is up, or the participant ends it.
 
-    The result is that of the recording, so that whoever reads it later finds the same.
+    The result is that of the recording, so that whoever reads it later finds the same. See
+    `open_session` for `source` and `front_end`.
 
     Raises
     ------
@@ -147,7 +164,9 @@ def play_task(
             raise _TaskOverError
 
     try:
-        with open_session(options, instruments=instruments) as session:
+        with open_session(
+            options, source=source, front_end=front_end, instruments=instruments
+        ) as session:
             summary = run(session, follow)
         summary.check()
         if summary.interrupted:

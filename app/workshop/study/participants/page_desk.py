@@ -1,25 +1,23 @@
-"""A participant at a page of this computer: questions and stimuli in a browser, tasks in a window.
+"""A participant at a page: questions, stimuli and tasks in a browser, as of the phone in a hand.
 
-The page is served on the loopback address alone, under an address that nobody can guess. A browser
-that is closed in mid-question is opened again at the same address, where the question still waits.
+A browser that is closed in mid-question is opened again at the same address, where the question
+still waits.
 """
 
-import queue
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import parse_qs
 
 import cv2
 
 from cubeling.app.errors import AppError
-from cubeling.app.ui.local_pages import HTML, LocalPages, PageReply
-from cubeling.app.workshop.study.participants.live_task import LiveDesk, TaskSetup
-from cubeling.app.workshop.study.participants.question_page import (
-    question_page,
-    text_page,
-    waiting_page,
+from cubeling.app.running.pages import awaited_camera, page_front_end
+from cubeling.app.session import SessionOptions
+from cubeling.app.ui.web.server import WebServer
+from cubeling.app.workshop.study.participants.live_task import LiveDesk, TaskSetup, play_task
+from cubeling.app.workshop.study.participants.question_sheet import (
+    question_sheet,
+    text_sheet,
+    waiting_sheet,
 )
 from cubeling.app.workshop.study.participants.stimulus_files import (
     MEDIA_TYPES,
@@ -28,136 +26,109 @@ from cubeling.app.workshop.study.participants.stimulus_files import (
     files_of,
     pictures_of,
 )
+from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
-from cubeling.app.workshop.study.protocols.protocol import Protocol
+from cubeling.app.workshop.study.protocols.protocol import Protocol, StudyTask
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
 
-MAX_FIELDS = 16
-"""Most fields of a form."""
-
-NEXT_S = 1.0
-"""How long an answer waits at most for the page that follows [s]."""
+SHOWN_PATH = "/shown"
+"""Where the server has stimuli, and pictures of answers."""
 
 GOODBYE_S = 2.5
-"""How long the last page may be fetched that thanks the participant [s]."""
+"""How long the last sheet may come that thanks the participant [s]."""
 
 POLL_S = 0.2
 """How often a wait looks for Ctrl-C [s]."""
 
-
-@dataclass(frozen=True)
-class ShownPage:
-    """What the browser gets."""
-
-    number: int
-    """Which answer it waits for; −1 for none."""
-
-    html: str
-    shown: tuple[Path | PageReply, ...] = ()
-    """What is shown on it: files, and pictures of answers."""
+Shown = Path | tuple[str, bytes]
+"""What is shown on a sheet: a file, or the media type and the data of a picture."""
 
 
 class PageDesk(LiveDesk):
-    """Asks on a page; a `StudyDesk` and a `LocalPage`.
+    """Asks on a page, on which tasks are played, too; a `StudyDesk` and `WebContent`.
 
     Parameters
     ----------
     protocol, setup, folder
         See `LiveDesk`.
-    pages
-        Serves the page; whoever opened it closes it.
+    server
+        Serves the page, with `study`; whoever opened it closes it.
     """
 
     def __init__(
-        self, protocol: Protocol, setup: TaskSetup, folder: Path, pages: LocalPages
+        self, protocol: Protocol, setup: TaskSetup, folder: Path, server: WebServer
     ) -> None:
         super().__init__(protocol, setup, folder)
-        self._shown = ShownPage(-1, waiting_page("The study begins in a moment"))
-        self._count = 0
-        self._answers: queue.Queue[tuple[int, str]] = queue.Queue()
-        self.address = pages.open(self)
-        """Where the participant's browser finds the page."""
+        self._server, self._number = server, 0
+        self._shown: tuple[Shown, ...] = ()
+        server.open(SHOWN_PATH, self)
+        self._show(waiting_sheet("The study begins in a moment"))
 
     def tell(self, title: str, text: str) -> None:
         """Show a text until the participant goes on."""
-        self._wait_for(lambda number, _: ShownPage(number, text_page(number, title, text)))
+        self._wait_for(text_sheet(title, text))
 
     def ask(self, step: PlannedStep, questionnaire: Questionnaire, item: Item) -> Answer:
         """Show what the question is about and the question, until there is an answer."""
         files = files_of(self._protocol, step, self._folder)
         pictures = [
-            PageReply("image/png", cv2.imencode(".png", picture)[1].tobytes())
+            ("image/png", cv2.imencode(".png", picture)[1].tobytes())
             for picture in pictures_of(item, self._folder)
         ]
-
-        def make(number: int, problem: str) -> ShownPage:
-            at = f"{self.address}/{number}"
+        problem = ""
+        while True:
+            at = f"{SHOWN_PATH}/{self._number + 1}"
             shown = [
                 (f"{at}/{place}", MEDIA_TYPES[file.suffix.lower()], caption)
                 for place, (file, caption) in enumerate(zip(files, captions_of(files), strict=True))
             ]
             points = [f"{at}/{len(files) + place}" for place in range(len(pictures))]
-            page = question_page(number, questionnaire, item, shown, points, problem)
-            return ShownPage(number, page, (*files, *pictures))
-
-        problem = ""
-        while True:
-            text = self._wait_for(make, problem)
+            sheet = question_sheet(questionnaire, item, shown, points, problem)
             try:
-                return item.parse(text)
+                return item.parse(self._wait_for(sheet, (*files, *pictures)))
             except AppError as error:
                 problem = str(error)
 
     def give_way(self) -> None:
-        """Show on the page where the task is."""
-        self._shown = ShownPage(-1, waiting_page("Look at the other window: you play now"))
+        """Show the picture of the task; without one, where it is."""
+        self._show("" if self._setup.pictures else waiting_sheet("You play now"))
 
     def thank(self) -> None:
-        """Show that all is done, for as long as a browser needs to fetch it."""
-        self._shown = ShownPage(-1, waiting_page("Thank you! You have finished."))
+        """Show that all is done, for as long as a browser needs to be told."""
+        self._show(waiting_sheet("Thank you! You have finished."), over=True)
         time.sleep(GOODBYE_S)
 
-    def get(self, place: str) -> PageReply | None:
-        """Return the page, or a stimulus that is shown on it."""
-        shown = self._shown
-        if not place:
-            return PageReply(HTML, shown.html.encode())
+    def get(self, place: str) -> tuple[str, bytes] | None:
+        """Return a stimulus, or a picture of an answer, of the sheet that is shown."""
         number, _, index = place.partition("/")
-        known = number == f"{shown.number}" and index.isdecimal() and len(index) < 3
-        if not known or int(index) >= len(shown.shown):
+        known = number == f"{self._number}" and index.isdecimal() and len(index) < 3
+        if not known or int(index) >= len(self._shown):
             return None
-        file = shown.shown[int(index)]
-        if isinstance(file, PageReply):
-            return file
-        return PageReply(MEDIA_TYPES[file.suffix.lower()], STIMULUS_FILE.read(file))
+        found = self._shown[int(index)]
+        if isinstance(found, Path):
+            return MEDIA_TYPES[found.suffix.lower()], STIMULUS_FILE.read(found)
+        return found
 
     def post(self, data: bytes) -> None:
-        """Take an answer, and show what follows."""
-        try:
-            text = data.decode()
-            fields = parse_qs(text, keep_blank_values=True, max_num_fields=MAX_FIELDS)
-        except ValueError:  # this is no form of ours
-            return
-        number = fields.get("number", [""])[0]
-        if number.isdecimal() and len(number) < 9:
-            self._answers.put((int(number), fields.get("answer", [""])[0]))
-            self._wait_for_next(int(number))
+        """Take nothing: answers are messages."""
 
-    def _wait_for(self, make: Callable[[int, str], ShownPage], problem: str = "") -> str:
-        """Show a page until it is answered; what an earlier one sends again is left out."""
-        self._count += 1
-        self._shown = make(self._count, problem)
+    def _play(self, options: SessionOptions, task: StudyTask) -> TaskResult:
+        """Play a task on the page."""
+        if options.pictures:
+            self._show("", ends=task.ends == "person")
+        with awaited_camera(options, self._server) as (found, camera):
+            front_end = page_front_end(self._server, study=True) if options.pictures else None
+            return play_task(found, task, self._setup.instruments, camera, front_end)
+
+    def _show(self, html: str, **more: bool) -> None:
+        self._server.tell("sheet", number=self._number, html=html, **more)
+
+    def _wait_for(self, html: str, shown: tuple[Shown, ...] = ()) -> str:
+        """Show a sheet until it is answered; what answers an earlier one is left out."""
+        self._number, self._shown = self._number + 1, shown
+        self._show(html)
         while True:
-            try:
-                number, text = self._answers.get(timeout=POLL_S)
-            except queue.Empty:
-                continue
-            if number == self._count:
-                self._shown = ShownPage(-1, waiting_page("One moment"))
-                return text
-
-    def _wait_for_next(self, number: int) -> None:
-        """Give the study a moment to show what follows, so that the browser asks for that."""
-        end = time.monotonic() + NEXT_S
-        while self._shown.number in (number, -1) and time.monotonic() < end:
-            time.sleep(0.02)
+            for said in self._server.take_requests(POLL_S):
+                if said.do == "answer" and said.id == self._number:
+                    self._show(waiting_sheet("One moment"))
+                    return said.name

@@ -36,7 +36,7 @@ class Pages:
     def taken_by(self, jpeg):
         return ("page", 12.5)
 
-    def report(self, status):
+    def tell(self, do, **status):
         self.statuses.append(status)
 
     def say(self, words):

@@ -12,14 +12,13 @@ import aiohttp
 import cv2
 import numpy as np
 import pytest
-from aiohttp import web
 
 from cubeling.app.admission import Token
 from cubeling.app.ui.web.acceptor import Listener
 from cubeling.app.ui.web.messages import PICTURE, SOUND, pack, read_said, unpack
 from cubeling.app.ui.web.page import MAX_PAGE_BYTES, document, page
 from cubeling.app.ui.web.place import CAMERA_QUIET_S, CameraPlace
-from cubeling.app.ui.web.server import LOOPBACK, WebServer
+from cubeling.app.ui.web.server import LOOPBACK, MAX_SENT_BYTES, WebServer
 
 WAIT_S = 20.0
 TOKEN = Token("open-sesame")
@@ -73,8 +72,8 @@ class Client:
 
 
 @asynccontextmanager
-async def page_of(server, name="page", role="play", token=TOKEN.text, headers=None):
-    url = f"http://{LOOPBACK}:{server.ports[0]}/socket?page={name}&role={role}"
+async def page_of(server, name="page", role="play", token=TOKEN.text, headers=None, attempt=1):
+    url = f"http://{LOOPBACK}:{server.ports[0]}/socket?page={name}&role={role}&attempt={attempt}"
     async with (
         aiohttp.ClientSession() as session,
         session.ws_connect(
@@ -248,34 +247,75 @@ def test_a_camera_that_sends_nothing_gives_its_place_up():
                       "second": ["free", "other", "free", "yours"]}  # fmt: skip
 
 
-def test_further_pages_are_open_and_further_paths_ask_for_the_token(tmp_path):
-    (tmp_path / "desk.html").write_text("<style>/*STYLE*/</style><script>/*SCRIPT*/</script>")
-    (tmp_path / "desk.css").write_text("p{margin:0}\n")
-    (tmp_path / "desk.js").write_text("/* The desk. */\n  let desk;\n")
+class Desk:
+    """What another page than the players' serves."""
 
-    async def answer(request):
-        return web.json_response({"asked": request.query["name"]})
+    def get(self, place):
+        return ("text/plain", b"secret") if place == "state" else None
 
-    desk = document("desk.html", ["desk.css"], ["desk.js"], tmp_path)
-    asked = "/answers?name=ada"
-    listener = [Listener(LOOPBACK, 0)]
+    def post(self, data):
+        return "text/plain", data.upper()
+
+
+def test_what_is_opened_has_a_token_of_its_own():
+    desk = Token("the-wizards-own")
 
     async def use(server):
+        server.open("/desk", Desk(), desk, document("desk.html", ["base.css"], ["base.js"]))
+        server.open("/shown", Desk())
+        bearers = {token.text: {"Authorization": f"Bearer {token.text}"} for token in (TOKEN, desk)}
+        here = f"http://localhost:{server.ports[0]}"
+        assert server.addresses("/desk", desk) == [f"{here}/desk#{desk.text}"]
         async with aiohttp.ClientSession(f"http://{LOOPBACK}:{server.ports[0]}") as session:
             async with session.get("/desk") as found:
-                text = await found.text()
-                assert text == "<style>p{margin:0}\n</style><script>let desk;\n</script>"
                 assert "sha256-" in found.headers["Content-Security-Policy"]
-            async with session.get(asked) as found:
+            for path, token, status in (
+                ("/desk/state", desk, 200),
+                ("/desk/other", desk, 404),
+                ("/desk/state", TOKEN, 403),
+                ("/shown/state", TOKEN, 200),
+                ("/shown/state", desk, 403),
+                ("/token", desk, 403),
+                ("/nothing/state", desk, 404),
+            ):
+                async with session.get(path, headers=bearers[token.text]) as found:
+                    assert found.status == status, (path, token)
+            async with session.get("/desk/state") as found:
                 assert found.status == 403
-            bearer = {"Authorization": f"Bearer {TOKEN.text}"}
-            async with session.get(asked, headers=bearer) as found:
-                assert await found.json() == {"asked": "ada"}
+            for data, token, status in (
+                (b"say", desk, 200),
+                (b"say", TOKEN, 403),
+                (b"", desk, 413),
+                (bytes(MAX_SENT_BYTES + 1), desk, 413),
+            ):
+                async with session.post("/desk", data=data, headers=bearers[token.text]) as found:
+                    assert found.status == status
+                    assert status != 200 or await found.read() == data.upper()
 
-    with closing(
-        WebServer(listener, TOKEN, documents={"/desk": desk}, routes={"/answers": answer})
-    ) as server:
-        asyncio.run(use(server))
+    serve(use)
+
+
+def test_a_connection_that_was_held_up_does_not_replace_a_later_one():
+    async def use(server):
+        async with page_of(server, attempt=7) as phone:
+            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+                async with page_of(server, attempt=6):
+                    pass
+            assert refused.value.status == 409
+            await phone.say(do="tick")
+            await phone.told("tick")
+
+    serve(use)
+
+
+def test_who_comes_later_is_told_the_present_state():
+    async def use(server):
+        server.tell("sheet", html="first")
+        server.tell("sheet", html="second")
+        async with page_of(server) as phone:
+            assert (await phone.told("sheet"))["html"] == "second"
+
+    serve(use)
 
 
 def test_players_ask_and_viewers_cannot():
