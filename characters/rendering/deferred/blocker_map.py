@@ -10,8 +10,11 @@ from cubeling.characters.rendering.geometry.surfaces import CASTER
 from cubeling.characters.rendering.programs import set_uniforms
 from cubeling.characters.skeleton.pose import Array
 
-MAP_SIDE = 360
-"""Texels along each side of the map."""
+MAP_SIDE, CLOSE_UP_SIDE = 360, 720
+"""Texels along each side of the map, and close up: where one texel would be wider in the picture
+than `CLOSE_UP_PX`."""
+
+CLOSE_UP_PX = 2.0
 
 BLOCKER_UNIT = 9
 """Texture unit of the map."""
@@ -44,16 +47,23 @@ class BlockerMap:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self.texture = context.texture((MAP_SIDE, MAP_SIDE), 4, dtype="f4")
+        self._lamp: Lamp | None = None
+        self._allocate(MAP_SIDE)
+
+    def _allocate(self, side: int) -> None:
+        self.texture = self._context.texture((side, side), 4, dtype="f4")
         """Distance of the nearest surface that blocks red, green and blue from the lamp [m], and
         where light first comes to a surface, see `entries.glsl`."""
         self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
-        self._target = context.framebuffer([self.texture])
-        self._lamp: Lamp | None = None
+        self._target = self._context.framebuffer([self.texture])
 
-    def render(self, characters: Sequence[CharacterInstance], lamp: Lamp) -> None:
-        """Draw characters as a lamp sees them."""
+    def render(self, characters: Sequence[CharacterInstance], lamp: Lamp, pixel_m: float) -> None:
+        """Draw characters as a lamp sees them, for a picture with pixels of some size [m]."""
         self._lamp = lamp
+        side = MAP_SIDE if _texel_m(lamp) < CLOSE_UP_PX * pixel_m else CLOSE_UP_SIDE
+        if side != self.texture.width:
+            self.release()
+            self._allocate(side)
         context = self._context
         self._target.use()
         self._target.clear(FREE_M, FREE_M, FREE_M, NO_ENTRY)
@@ -83,7 +93,7 @@ class BlockerMap:
         """
         assert self._lamp is not None
         lamp = self._lamp
-        texel = float((lamp.high - lamp.low).max()) / MAP_SIDE * lamp.furthest
+        texel = _texel_m(lamp)  # close up, no finer ranges: pieces of skin overlap by as much
         self.texture.use(BLOCKER_UNIT)
         set_uniforms(
             program,
@@ -100,3 +110,8 @@ class BlockerMap:
         """Release the map; a second call does nothing."""
         self._target.release()
         self.texture.release()
+
+
+def _texel_m(lamp: Lamp) -> float:
+    """Return the size of a texel of a map of `MAP_SIDE` on what is furthest from a lamp [m]."""
+    return float((lamp.high - lamp.low).max()) / MAP_SIDE * lamp.furthest

@@ -9,6 +9,7 @@ import pytest
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.mesh import Material
 from cubeling.characters.rendering import QUALITIES, Effect, Quality, Stage
+from cubeling.characters.rendering.deferred.blocker_map import CLOSE_UP_SIDE, MAP_SIDE
 from cubeling.characters.rendering.deferred.lamp import LAMP_DISTANCE_M, LAMP_WIDTH_M
 from cubeling.characters.rendering.passes.deferred import visibility
 from cubeling.characters.rendering.passes.deferred.soft_shadows import TABLE_SIDE, SoftShadowPass
@@ -107,6 +108,17 @@ def test_two_panes_multiply_their_light(left):
     for second, expected in ((RED, [1.0, 0.25, 0.25]), (green, [0.5, 0.5, 0.25])):
         found = light_behind(left, pane(0.03, RED, 0.5), pane(0.035, second, 0.5))
         assert found == pytest.approx(expected, abs=0.05)
+
+
+def test_the_map_is_finer_close_up_alone(ctx, view, pawn):
+    stage = Stage(ctx, (320, 180))
+    stage.quality = QUALITIES["rich"]
+    (shadows,) = (each for each in stage.passes if isinstance(each, SoftShadowPass))
+    near = replace(view, matrix=view.matrix * np.array([[30.0], [30.0], [1.0]]))
+    for seen, side in ((view, MAP_SIDE), (near, CLOSE_UP_SIDE), (view, MAP_SIDE)):
+        stage.draw(seen, [pawn.posed()])
+        assert shadows._blockers.texture.size == (side, side)
+    stage.release()
 
 
 def test_who_is_inside_a_cube_does_not_coarsen_the_shadow_on_the_table(ctx, view, pawn, cube):

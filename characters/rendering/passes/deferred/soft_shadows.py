@@ -61,7 +61,7 @@ class SoftShadowPass(ShadowPass):
             return
         casters = np.concatenate([each.enclosing for each in frame.on_table])
         lamp = Lamp.over(casters, frame.light.to_light)
-        self._blockers.render(frame.on_table, lamp)
+        self._blockers.render(frame.on_table, lamp, frame.pixel_m)
         around = [sky_extent(each.enclosing, each.height) for each in frame.on_table]
         self._extent = _unite([lamp.shadow(casters), *around])
         self._find_openness()
@@ -71,7 +71,8 @@ class SoftShadowPass(ShadowPass):
         """Empty the map of blockers, if some characters that are not on the table ask for it."""
         points = frame.points_on_layer
         if len(points):
-            self._blockers.render(frame.on_table, Lamp.over(points, frame.light.to_light))
+            lamp = Lamp.over(points, frame.light.to_light)
+            self._blockers.render(frame.on_table, lamp, frame.pixel_m)
 
     def _key_share(self, light: Light) -> Array:
         """Return zero: the maps of `ShadowPass` hold the light from all around alone."""
