@@ -16,6 +16,7 @@ async function connect() {
   }
   inFlight.clear();
   place = "";
+  tried = now();
   const mine = attempt = Math.max(Date.now(), attempt + 1);
   const answer = await ask(`/token?page=${page}`, {signal: AbortSignal.timeout(1000 * TRY_S)}).catch(() => { });
   if (mine !== attempt) return;
@@ -38,7 +39,7 @@ async function connect() {
 function again(why) {
   const mine = attempt;
   if (why !== "lost" || now() - heard > LOST_S) for (const each of ["lost", "code", "full"]) trouble(each, each === why);
-  setTimeout(() => mine === attempt && !over && connect(), AGAIN_MS);
+  setTimeout(() => mine === attempt && !over && connect(), now() - tried > TRY_S ? 0 : AGAIN_MS);
 }
 
 function say(message) {
