@@ -64,7 +64,9 @@ class EmptyTable:
         new = cv2.morphologyEx(new, cv2.MORPH_CLOSE, CLOSING)
         if cv2.countNonZero(new) > MAX_NEW * new.size:
             new[:] = 0
-        self._age = np.asarray(cv2.min(cv2.add(self._age, 1), new), np.uint8)  # `new` is 255 or 0
+        self._age = np.asarray(
+            np.minimum(np.minimum(self._age, 254) + 1, new), np.uint8
+        )  # that is 255 or 0
         new[self._age > SETTLING_MAPS] = 0
         cv2.copyTo(small, cv2.bitwise_not(new), self.picture)
         return tuple(_things(np.asarray(new, np.uint8)))
