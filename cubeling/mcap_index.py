@@ -14,7 +14,7 @@ from typing import BinaryIO
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.reader import NonSeekingReader, SeekingReader
-from mcap.records import Channel, Chunk, ChunkIndex, Message, Schema
+from mcap.records import Channel, Chunk, ChunkIndex, Message, Metadata, Schema
 from mcap.stream_reader import get_chunk_data_stream
 
 IndexedMessage = tuple[Schema | None, Channel, Message]
@@ -57,6 +57,16 @@ class McapIndex:
         """Channels, schemas and statistics, as the file states them."""
         self._chunks = sorted(summary.chunk_indexes, key=lambda each: each.chunk_start_offset)
         self._ends = list(accumulate((each.message_end_time for each in self._chunks), max))
+        self._known_numbers: dict[str, list[int]] = {}
+
+    def metadata(self) -> dict[str, dict[str, str]]:
+        """Return the values of each metadata record, by its name."""
+        found = {}
+        for each in self.summary.metadata_indexes:
+            self._file.seek(each.offset + RECORD_START.size)
+            record = Metadata.read(ReadDataStream(self._file))
+            found[record.name] = record.metadata
+        return found
 
     def messages(
         self, topics: Collection[str] = (), *, since: int = 0, reverse: bool = False
@@ -93,22 +103,34 @@ class McapIndex:
         Their times must not decrease.
         """
         place, ids = bisect_left(self._ends, since), self._channels((topic,))
-        before = sum(self._count(each, ids) for each in range(place))
+        before = self._numbers(topic)[place - 1] if place else 0
         if place == len(self._chunks):
             return before
         return before + sum(each[2].log_time < since for each in self._read(place, ids))
 
-    def back_from(self, topic: str, number: int) -> Iterator[IndexedMessage]:
-        """Yield the message of a topic with a number, from 0, and those before it, backwards."""
-        ids = self._channels((topic,))
-        ends = list(accumulate(self._count(each, ids) for each in range(len(self._chunks))))
+    def time_of(self, topic: str, number: int) -> int | None:
+        """Return when a message of a topic was logged, by its number from 0 [ns]; None if none."""
+        ends = self._numbers(topic)
         place = bisect_right(ends, number)
-        if place < len(ends):
-            found = list(self._read(place, ids))
-            left_out = ends[place] - number - 1
-            yield from reversed(found[: len(found) - left_out])
-            for earlier in range(place - 1, -1, -1):
-                yield from reversed(list(self._read(earlier, ids)))
+        if place == len(ends):
+            return None
+        found = list(self._read(place, self._channels((topic,))))
+        return found[number - ends[place]][2].log_time
+
+    def back_from(self, topic: str, last: int) -> Iterator[IndexedMessage]:
+        """Yield the last message of a topic until a time [ns], and those before it, backwards."""
+        ids = self._channels((topic,))
+        for place in range(min(bisect_left(self._ends, last), len(self._chunks) - 1), -1, -1):
+            own = [each for each in self._read(place, ids) if each[2].log_time <= last]
+            yield from reversed(own)
+
+    def _numbers(self, topic: str) -> list[int]:
+        """Return how many messages of a topic there are until the end of each chunk."""
+        if topic not in self._known_numbers:
+            ids = self._channels((topic,))
+            counts = (self._count(place, ids) for place in range(len(self._chunks)))
+            self._known_numbers[topic] = list(accumulate(counts))
+        return self._known_numbers[topic]
 
     def _channels(self, topics: Collection[str]) -> set[int]:
         """Return the numbers of the channels of some topics, or of all."""

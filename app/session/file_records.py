@@ -5,7 +5,7 @@ import struct
 from typing import BinaryIO
 
 from mcap.exceptions import McapError
-from mcap.records import Chunk, DataEnd, Metadata
+from mcap.records import DataEnd, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
@@ -20,14 +20,14 @@ channel (KeyError) or before the file (OSError), a chunk that cannot be decompre
 
 
 def metadata_of(file: BinaryIO, size: int) -> dict[str, dict[str, str]]:
-    """Return the metadata of a session, which the recorder writes first."""
+    """Return the metadata of a session without its index: all records are read, no messages."""
     metadata: dict[str, dict[str, str]] = {}
     file.seek(0)
     try:
-        for record in StreamReader(file, record_size_limit=size).records:
+        for record in StreamReader(file, emit_chunks=True, record_size_limit=size).records:
             if isinstance(record, Metadata):
                 metadata[record.name] = record.metadata
-            elif isinstance(record, Chunk | DataEnd):
+            elif isinstance(record, DataEnd):
                 break
     except READ_ERRORS:
         pass  # what is whole of it

@@ -55,7 +55,7 @@ class MessageFile:
         """Whether it was written to its end."""
         # No record is longer than the file: a damaged length takes no memory.
         self._size = self._file.seek(0, os.SEEK_END)
-        self.metadata = metadata_of(self._file, self._size)
+        self.metadata = self._read_metadata()
         """The values of each metadata record, by its name."""
         version = self.metadata.get(SESSION_RECORD, {}).get(FORMAT_KEY, "0")
         if not version.isdecimal() or int(version) > SESSION_FORMAT:
@@ -66,6 +66,13 @@ class MessageFile:
             )
         self.format = int(version)
         """The version of its format; 0 before there were versions."""
+
+    def _read_metadata(self) -> dict[str, dict[str, str]]:
+        if self.is_whole:
+            with suppress(*READ_ERRORS):
+                if found := self._index.metadata():
+                    return found
+        return metadata_of(self._file, self._size)
 
     def __enter__(self) -> Self:
         return self
@@ -167,9 +174,10 @@ class MessageFile:
     def frame_time(self, number: int) -> float:
         """Return the timestamp of a frame by its number [s]; raises AppError."""
         with self.named_damage():
-            for _, _, message in self._index.back_from(IMAGE_TOPIC, number):
-                return message.log_time / 1e9
-            raise ValueError("its index leads to no frame")
+            time = self._index.time_of(IMAGE_TOPIC, number)
+            if time is None:
+                raise ValueError("its index leads to no frame")
+            return time / 1e9
 
     @contextmanager
     def named_damage(self) -> Iterator[None]:

@@ -21,14 +21,15 @@ from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
 from mcap.writer import Writer
 from rich.console import Console
 
-from cubeling.app.pipeline.step import Step
+from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.pipeline.step import RobotView, Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.playback import transport
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.encoding import IMAGE_TOPIC
 from cubeling.app.session.recorder import CHUNK_S
-from cubeling.app.ui.playback.requests import Pause, SeekTo
+from cubeling.app.ui.playback.requests import Pause, SeekTo, SessionRequest
 from cubeling.app.ui.screen import NullScreen
 
 BAR_S = 0.5
@@ -62,7 +63,7 @@ def repeat(base: Path, path: Path, hours: float) -> int:
             for schema, channel, message in records:
                 now = message.log_time + shift
                 if now >= end:
-                    writer.flush()  # type: ignore[no-untyped-call]  # mcap has no types here
+                    writer.flush()
                     end = now + chunk_ns
                 if channel.topic not in ids:
                     assert schema is not None
@@ -79,7 +80,7 @@ def repeat(base: Path, path: Path, hours: float) -> int:
                 elif channel.message_encoding == "json":
                     data = TIMESTAMP.sub(b'"timestamp":%.9f}' % (now / 1e9), data)
                 writer.add_message(ids[channel.topic], now, data, now)
-        writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
+        writer.finish()
     with SessionFile(path) as session:
         return len(session._index.summary.chunk_indexes)
 
@@ -99,7 +100,7 @@ class Seeker(NullScreen):
         """How far a shown frame was from what was sought at most [s]."""
         self._first: float | None = None
 
-    def show(self, step: Step, robot: object) -> None:
+    def show(self, step: Step, robot: RobotView) -> Inputs:
         """Note when a place is reached."""
         now = step.frame.timestamp
         self._first = now if self._first is None else self._first
@@ -110,13 +111,14 @@ class Seeker(NullScreen):
             self.missed = max(self.missed, abs(now - self._first - self._places.pop(0)))
             self._asked = False
             self.closed = not self._places
+        return Inputs()
 
-    def take_requests(self) -> list[object]:
+    def take_requests(self) -> tuple[SessionRequest, ...]:
         """Seek the next place once the last one is shown."""
-        if self._asked or self._first is None:
-            return []
+        if self._asked or self._first is None or not self._places:
+            return ()
         self._asked, self._since = True, (time.process_time(), time.monotonic())
-        return [Pause(), SeekTo(self._places[0])]
+        return (Pause(), SeekTo(self._places[0]))
 
 
 def main() -> int:

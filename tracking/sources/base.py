@@ -127,8 +127,11 @@ class StoredFrames(FrameSource):
             yield first
         yield from self._frames
 
-    def restart(self, index: int) -> None:
-        """Return the frames again, from one on; none if there are not as many."""
+    def restart(self, index: int, timestamp: float | None = None) -> None:
+        """Return the frames again, from one on; none if there are not as many.
+
+        Its timestamp, where it is known [s], may spare looking for it.
+        """
         raise NotImplementedError
 
     def close(self) -> None:

@@ -18,7 +18,7 @@ from mcap.stream_reader import MAGIC_SIZE, StreamReader
 from cubeling.mcap_index import IndexedMessage, McapIndex
 from cubeling.tracking.errors import TrackingError
 from cubeling.tracking.geometry.intrinsics import Intrinsics
-from cubeling.tracking.sources.base import seconds_of
+from cubeling.tracking.sources.base import nanoseconds_of, seconds_of
 from cubeling.tracking.sources.decoding import BrokenFileError, EncodedImage
 
 IMAGE_TOPIC = "/camera/image"
@@ -60,24 +60,27 @@ class CameraChannels:
             return None
         return seconds_of(times.message_end_time - times.message_start_time)
 
-    def images_from(self, number: int) -> Iterator[EncodedImage]:
+    def images_from(self, number: int, time: float | None = None) -> Iterator[EncodedImage]:
         """Return the images from a number on, after those that they build on, which are not seen.
 
-        Raises BrokenFileError as `images` does.
+        Its time, where it is known [s], spares counting. Raises BrokenFileError as `images` does.
         """
         if self._index is None:
             yield from _from(number, self.images())
             return
         try:
-            back = self._index.back_from(IMAGE_TOPIC, number)
-            wanted = first = next(back, None)
-            while first is not None and not _image_in(first).alone:
-                first = next(back, None)
-            if wanted is None or first is None:
+            wanted = (
+                self._index.time_of(IMAGE_TOPIC, number) if time is None else nanoseconds_of(time)
+            )
+            if wanted is None:
                 return
-            for each in self._index.messages((IMAGE_TOPIC,), since=first[2].log_time):
-                seen = each[2].log_time >= wanted[2].log_time
-                yield replace(_image_in(each), seen=seen)
+            first = wanted
+            for each in self._index.back_from(IMAGE_TOPIC, wanted):
+                first = each[2].log_time
+                if _image_in(each).alone:
+                    break
+            for each in self._index.messages((IMAGE_TOPIC,), since=first):
+                yield replace(_image_in(each), seen=each[2].log_time >= wanted)
         except BrokenFileError:
             raise
         except Exception as error:  # each kind of damage raises its own class

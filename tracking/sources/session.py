@@ -61,10 +61,10 @@ class SessionSource(StoredFrames):
         super().close()
         self._file.close()
 
-    def restart(self, index: int) -> None:
+    def restart(self, index: int, timestamp: float | None = None) -> None:
         """Return the frames again, from one on; its place is found by the index of the file."""
         super().close()
-        self._frames = self._decode_frames(self._channels.images_from(index), index)
+        self._frames = self._decode_frames(self._channels.images_from(index, timestamp), index)
 
     def _decode_frames(
         self, images: Iterator[EncodedImage], index: int

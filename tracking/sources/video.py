@@ -57,7 +57,7 @@ class VideoSource(StoredFrames):
         super().close()
         self._container.close()
 
-    def restart(self, index: int) -> None:
+    def restart(self, index: int, timestamp: float | None = None) -> None:
         """Return the frames again, from one on; those before it are decoded, too."""
         self.close()
         self._container = _open(self._path)

@@ -67,12 +67,12 @@ class FrameFeed(Closeable):
         """Let the next live frame follow the last one: after a pause, or in another source."""
         self._close_gap = True
 
-    def rewind(self, index: int) -> None:
-        """Read a recording again, from a frame on."""
+    def rewind(self, index: int, timestamp: float | None = None) -> None:
+        """Read a recording again, from a frame on, whose timestamp may be known [s]."""
         session, options = self._session, self._session.options
         self._wait()
         assert isinstance(session.source, StoredFrames), "only recordings are read again"
-        session.source.restart(index)
+        session.source.restart(index, timestamp)
         self._frames = iter(session.source)
         session.replay_inputs = None
         if options.stage != "camera" and session.replayed is not None:

@@ -93,6 +93,8 @@ class Transport(Closeable):
             return frame
         if self._first is None:
             self._first = frame.timestamp
+            if self._replayed is not None:
+                self._replayed.frame_time(0)  # counts frames once, so that no seek has to
             if self._start > 0.0:
                 self._go(_Target(self._first + self._start))
                 if self._shows_recorded:
@@ -258,9 +260,9 @@ class Transport(Closeable):
 
     def _show_recorded(self, replayed: SessionFile, number: int) -> None:
         """Go to a frame by the index of the file, and show what was recorded from there on."""
-        self._feed.rewind(number)
-        self._session.restart()
         since = replayed.frame_time(number)
+        self._feed.rewind(number, since)
+        self._session.restart()
         self._session.replay_inputs = replayed.replay_inputs(START_STAGES[-1], since)
         self._shows_recorded = True
 

@@ -196,9 +196,9 @@ def test_each_person_of_a_cast_is_sent_to_an_address_of_its_own(human):
             receiver, own = VmcReceiver(), VmcReceiver()
             while len(receiver.bones) < len(TPoseBones(human).parts):
                 receiver.take(listener.recv(65536))
-            for each in VmcBody(human).messages(posed(human, pose), 0.0):
-                if each.address == "/VMC/Ext/Bone/Pos":
-                    own.bones[each.arguments[0]] = np.array(each.arguments[1:])
+            for sent in VmcBody(human).messages(posed(human, pose), 0.0):
+                if sent.address == "/VMC/Ext/Bone/Pos":
+                    own.bones[sent.arguments[0]] = np.array(sent.arguments[1:])
             for name, numbers in own.bones.items():
                 np.testing.assert_allclose(receiver.bones[name], numbers, atol=1e-6)
 

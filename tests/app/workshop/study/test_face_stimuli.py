@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
+from cubeling.app.workshop.stimuli.film import MANIFEST
 from cubeling.app.workshop.study.face_stimuli import (
     APEX_S,
-    MANIFEST,
     ONSET_S,
     RATE,
     RECIPES,

@@ -95,7 +95,7 @@ def test_a_missing_loudspeaker_is_said_once(tmp_path):
             super().__init__(mixer)
             self.playing = False
 
-    told = []
+    told: list[str] = []
     with FilmSounds(told.append, Missing) as sounds:
         for _ in range(2):
             sounds.prepare([np.ones(9)])
