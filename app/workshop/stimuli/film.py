@@ -1,22 +1,17 @@
-"""A film of a study, and the table that says what its files show."""
+"""A film of a study."""
 
-import csv
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cubeling.app.errors import AppError
 from cubeling.app.speaking.speech_video import focus_of
 from cubeling.app.speaking.view import View
 from cubeling.app.ui.clip_video import write_clip
 from cubeling.characters import Character, Clip
 from cubeling.characters.rendering import standing_pose
-from cubeling.files import whole_file
-
-MANIFEST = "manifest.csv"
 
 ELEVATION_RAD = 0.08
 
@@ -54,14 +49,3 @@ def write_film(
         focus=lambda _pose, _now: seen,
         sound=sound,
     )
-
-
-def write_rows(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
-    """Write rows of the same columns as CSV; raises AppError."""
-    with (
-        whole_file(path, AppError) as partial,
-        partial.open("w", encoding="utf-8", newline="") as file,
-    ):
-        writer = csv.DictWriter(file, list(rows[0]) if rows else [])
-        writer.writeheader()
-        writer.writerows(rows)

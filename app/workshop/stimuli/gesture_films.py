@@ -18,7 +18,8 @@ from cubeling.app.workshop.reproduction.gesturing.spoken import (
     accents_for,
     speeches,
 )
-from cubeling.app.workshop.stimuli.film import MANIFEST, FilmLook, write_film, write_rows
+from cubeling.app.workshop.stimuli.film import FilmLook, write_film
+from cubeling.app.workshop.study.manifest import MANIFEST, write_rows
 from cubeling.characters import Character, Clip, read_motions
 from cubeling.characters.motion import (
     GestureLibrary,

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from cubeling.app.workshop.reproduction.standing.people import read_people
-from cubeling.app.workshop.stimuli.film import MANIFEST, FilmLook, write_film, write_rows
+from cubeling.app.workshop.stimuli.film import FilmLook, write_film
+from cubeling.app.workshop.study.manifest import MANIFEST, write_rows
 from cubeling.characters import Character, Clip, Pose
 from cubeling.characters.motion import (
     IdleDatabase,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.ui.video_file import VideoFile
-from cubeling.app.workshop.stimuli.film import MANIFEST, write_rows
+from cubeling.app.workshop.study.manifest import MANIFEST, write_rows
 from cubeling.app.workshop.study.protocols.protocol import Stimulus
 from cubeling.app.workshop.study.protocols.protocol_file import load_protocol
 from cubeling.characters import Character, Pose

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.workshop.stimuli.film import MANIFEST
 from cubeling.app.workshop.study.face_stimuli import (
     APEX_S,
     ONSET_S,
@@ -17,6 +16,7 @@ from cubeling.app.workshop.study.face_stimuli import (
     draw_faces,
     morph_weights,
 )
+from cubeling.app.workshop.study.manifest import MANIFEST
 from cubeling.characters import Character
 from cubeling.tracking import open_source
 
