@@ -7,6 +7,7 @@ foot whose offset becomes too large takes a quick step.
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from cubeling.characters.motion.inertialization import quintic_decay
 
@@ -32,8 +33,7 @@ _EARLY_LANDING_SHARE, _EARLY_LANDING_DISTANCE = 0.35, 0.012
 _MAX_DECAY_SPEED = 3.0  # [body heights/s, rad/s]: limit of the initial velocity of a decay
 
 
-@dataclass(frozen=True)
-class FootPoints:
+class FootPoints(NamedTuple):
     """The points of a foot that touch the ground, in the world, in the motion [m]."""
 
     heel: tuple[float, float, float]

@@ -1,8 +1,8 @@
 """Steering of a walker to a target: how fast to go and how sharply to turn."""
 
 import math
-from dataclasses import dataclass
 from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,8 +26,7 @@ _CIRCLE_SPEEDS = [IDLE_SPEED, *_RADIUS_SPEEDS]
 _MAX_REVERSING_ERROR = math.radians(150)
 
 
-@dataclass(frozen=True)
-class SteeringOutput:
+class SteeringOutput(NamedTuple):
     """Desired motion of a walker."""
 
     speed: float

@@ -7,8 +7,7 @@ points: the mean of two arcs is an arc, and the deltas of parts compose to the d
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from cubeling.affect import Emotion
 from cubeling.characters.skeleton.pose import Pose
@@ -18,8 +17,7 @@ _WEIGHT_INTERVAL_S = 1 / 60  # varying weights are constant within such an inter
 _MAX_ARC_RAD = 3.0  # a larger turn is not described by a single arc
 
 
-@dataclass(frozen=True)
-class RootDelta:
+class RootDelta(NamedTuple):
     """A planar rigid motion of the root over the ground, in the frame that it starts from.
 
     `RootDelta()` is no movement. A place on the ground is the delta from the origin to it.

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -201,7 +200,7 @@ class MatchingController:
         if self._pace_now > STANDING_PACE * self._height and abs(error) < MAX_ADJUSTED_RAD:
             most = min(ADJUSTMENT_RATE, MAX_UNLEANED_M_S2 / self._pace_now) * elapsed
             turn = min(max(error - low_pass(error, 0.0, elapsed, ADJUSTMENT_LAG_S), -most), most)
-            self.place = replace(self.place, yaw=self.place.yaw + turn)
+            self.place = self.place._replace(yaw=self.place.yaw + turn)
 
     def _play(self, action: str, weight: float, now: float) -> None:
         """Enter an action, or go on with it at another intensity; or go back to matching."""

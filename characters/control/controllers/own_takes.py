@@ -1,7 +1,6 @@
 """Takes of a character that walks by its own clips: what matching plays without recordings."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from cubeling.characters.control.controllers.walk import TURN_SPEED, WalkController
 from cubeling.characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD
@@ -98,12 +97,12 @@ def _on_the_way(before: SteeringOutput, after: SteeringOutput, part: float) -> S
     old = (
         before
         if before.speed > 0.0
-        else replace(_SLOWEST, angular=after.angular, stride=after.stride)
+        else _SLOWEST._replace(angular=after.angular, stride=after.stride)
     )
     new = (
         after
         if after.speed > 0.0
-        else replace(_SLOWEST, angular=before.angular, stride=before.stride)
+        else _SLOWEST._replace(angular=before.angular, stride=before.stride)
     )
     return SteeringOutput(
         old.speed + part * (new.speed - old.speed),

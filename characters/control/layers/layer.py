@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -86,8 +86,7 @@ class FrameContext:
         return turned / float(np.linalg.norm(turned))
 
 
-@dataclass(frozen=True)
-class Found:
+class Found(NamedTuple):
     """What a layer returns that has found something for those after it."""
 
     pose: Pose
