@@ -60,7 +60,7 @@ class ConstrainedJoints:
 
     def apply(self, pose: Pose) -> Pose:
         """Return a pose, of one frame, with its constrained joints turned."""
-        turned = Pose(pose.translations, pose.rotations.copy(), pose.scales, pose.morphs)
+        turned = pose.with_rotations(pose.rotations.copy())
         local, rest = turned.rotations, self._skeleton.rest.rotations
         for group in self._groups:
             own = rest[group.joints]

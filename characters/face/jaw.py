@@ -34,4 +34,4 @@ class JawJoint:
         turned = pose.rotations.copy()
         turn = rotations.from_rotation_vector(OPEN_RAD * opening * self._axis)
         turned[self._joint] = rotations.multiply(turn, turned[self._joint])
-        return Pose(pose.translations, turned, pose.scales, pose.morphs)
+        return pose.with_rotations(turned)

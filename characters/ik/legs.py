@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +25,7 @@ from cubeling.characters.skeleton.scalar_quaternions import (
 )
 
 
-@dataclass(frozen=True)
-class LegFrames:
+class LegFrames(NamedTuple):
     """Global frames of the joints of legs and their ancestors, in one pose."""
 
     rotations: list[Quaternion]
@@ -119,7 +119,7 @@ class LegIK:
             rows.append(multiply(conjugate(shin), multiply(foot, frames.rotations[ankle])))
         bent = pose.rotations.copy()
         bent[self._rows] = rows
-        return Pose(pose.translations, bent, pose.scales, pose.morphs)
+        return pose.with_rotations(bent)
 
     def plant(
         self,
@@ -162,7 +162,7 @@ class LegIK:
             rows.append(multiply(conjugate(shin), turns[ankle]))
         bent = pose.rotations.copy()
         bent[self._rows] = rows
-        return Pose(pose.translations, bent, pose.scales, pose.morphs)
+        return pose.with_rotations(bent)
 
     def lower_pelvis(
         self, pose: Pose, frames: LegFrames, distance: float

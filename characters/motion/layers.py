@@ -134,7 +134,7 @@ def lay_over(
         turns = (way or WayRound()).mix(below, turns, weight)
     local = pose.rotations.copy()
     local[joints] = turns
-    return Pose(pose.translations, local, pose.scales, pose.morphs)
+    return pose.with_rotations(local)
 
 
 def overlaid(base: Pose, over: Pose, shares: Array, morphs: float) -> Pose:

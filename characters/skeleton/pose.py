@@ -38,6 +38,19 @@ class Pose:
         translations, turns = zip(*parts, strict=True)
         return Pose(np.stack(translations), np.stack(turns))
 
+    def with_rotations(self, turns: Array) -> "Pose":
+        """Return the pose with other rotations, (…, joints, 4)."""
+        # A layer does so in every frame: to set frozen fields one by one takes longer.
+        pose = object.__new__(Pose)
+        pose.__dict__.update(self.__dict__, rotations=turns)
+        return pose
+
+    def with_morphs(self, weights: Array) -> "Pose":
+        """Return the pose with other weights of its morphs, (…, morphs)."""
+        pose = object.__new__(Pose)
+        pose.__dict__.update(self.__dict__, morphs=weights)
+        return pose
+
     @property
     def scales_or_ones(self) -> Array:
         """The scales, (…, joints, 3); all ones if there are none."""

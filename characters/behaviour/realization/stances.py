@@ -196,7 +196,7 @@ class StanceJoints:
         local[self._joints] = rotations.multiply(local.take(self._joints, 0), turns)
         if hips or trunk:
             self._turn(local, hips, trunk)
-        turned = Pose(pose.translations, local, pose.scales, pose.morphs)
+        turned = pose.with_rotations(local)
         followed = values[: self._legs_follow].tolist()
         if self._legs is None or not (hips or trunk or any(followed)):
             return turned

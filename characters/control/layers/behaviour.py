@@ -107,7 +107,7 @@ class FaceShiftLayer:
         if self._values.resting or not weights.any():
             return pose
         shown: Array = weights if pose.morphs is None else pose.morphs + weights
-        return Pose(pose.translations, pose.rotations, pose.scales, np.minimum(shown, 1.0))
+        return pose.with_morphs(np.minimum(shown, 1.0))
 
 
 def gaze_of(context: FrameContext) -> GazeIntent | None:

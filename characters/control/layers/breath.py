@@ -24,4 +24,4 @@ class BreathLayer:
             return pose
         weights = np.zeros(self._count) if pose.morphs is None else pose.morphs.copy()
         weights[self._morph] += context.breath
-        return Pose(pose.translations, pose.rotations, pose.scales, weights)
+        return pose.with_morphs(weights)

@@ -62,7 +62,7 @@ class FaceLayer:
             self._lids.close(weights, closed)
         if self._wide is not None:
             weights[self._wide] *= 1.0 - closed  # morphs add up: wide eyes would not close
-        shown = Pose(pose.translations, pose.rotations, pose.scales, weights)
+        shown = pose.with_morphs(weights)
         if not self._speech.active:
             return shown
         self._speech.apply(weights, closed)

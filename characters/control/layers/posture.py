@@ -34,5 +34,5 @@ class PostureLayer:
         )
         local = pose.rotations.copy()
         local[joints] = rotations.multiply(local.take(joints, 0), turns)
-        moved = Pose(pose.translations, local, pose.scales, pose.morphs)
+        moved = pose.with_rotations(local)
         return Found(moved, context.found(breath=self._sway.breath))

@@ -102,4 +102,4 @@ class ArmJoints:
         turns = rotations.from_rotation_vector(self._vectors @ degrees)
         local = pose.rotations.copy()
         local[self._joints] = rotations.multiply(local.take(self._joints, 0), turns)
-        return Pose(pose.translations, local, pose.scales, pose.morphs)
+        return pose.with_rotations(local)

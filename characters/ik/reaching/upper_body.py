@@ -159,7 +159,7 @@ class UpperBody:
         self.bring(local, frames, torso, hands, (turned, opened), style)
         if holds:
             self._hold(local, frames, torso, hands[0], opened)
-        return ReachedPose(Pose(pose.translations, local, pose.scales, pose.morphs), effort)
+        return ReachedPose(pose.with_rotations(local), effort)
 
     def wanted_hands(
         self, left: HandTarget | None, right: HandTarget | None
