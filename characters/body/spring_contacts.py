@@ -55,7 +55,7 @@ class Contacts:
         while turn < turns:
             away, squares = self._from_axes(tails, ends, turn)
             inside = squares < self.squared_reach[:, turn:]
-            if not inside.any():
+            if not np.count_nonzero(inside):
                 break
             # The first turn in which a tail is in a collider.
             first = int(inside.any(axis=0).argmax()) if turn + 1 < turns else 0

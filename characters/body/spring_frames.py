@@ -55,13 +55,13 @@ class PlacedBones:
         shares = _shares_of_steps(steps)
         earlier = before.frames[first]
         mixed = earlier + shares[:-1] * (self.frames[first] - earlier)
-        # One Newton step of the polar decomposition makes the mixture a rotation again.
-        turns = mixed[..., :3]
-        straight = 1.5 * mixed - (0.5 * turns) @ (turns.swapaxes(-1, -2) @ mixed)
-        straight[..., 3] = mixed[..., 3]
+        # Directions between two frames are a little too short.
+        columns = mixed.swapaxes(-1, -2)
+        sizes = np.sqrt(np.vecdot(columns, columns))
+        sizes[..., 3] = 1.0  # the origin
         frames = np.empty((steps, *self.frames.shape))
         frames[:] = self.frames
-        frames[:-1, first] = straight
+        np.divide(mixed, sizes[..., None, :], out=frames[:-1, first])
         return frames, before.colliders + shares * (self.colliders - before.colliders)
 
 
@@ -113,7 +113,7 @@ class SpringFrames:
     def place_bones(self, pose: Pose, world_from_character: Array) -> PlacedBones:
         """Return where the pose has the bones."""
         bones, carriers = len(self.bones), len(self.bones) + len(self.shapes)
-        placed = world_from_character[:3] @ self._part.globals(pose).take(self._wanted, 0)
+        placed = self._part.globals(pose, world_from_character)[self._wanted, :3]
         columns = placed[:bones] @ self._columns
         frames, tails, lengths = columns[..., :5], columns[..., 5], self._lengths
         centers = placed[carriers:]

@@ -117,11 +117,11 @@ class SpringBody:
         turned[self._frames.joints] = rotations.multiply(
             turned.take(self._frames.joints, 0), self._turns(directions)
         )
-        return Pose(pose.translations, turned, pose.scales, pose.morphs)
+        return pose.with_rotations(turned)
 
     def _turns(self, directions: Array) -> Array:
         """Return the smallest rotations of the bones' axes to directions, (bones, 4)."""
-        halves: Array = (self._half_turns @ directions[:, :, None])[..., 0]
+        halves: Array = np.vecdot(self._half_turns, directions[:, None])
         cosines = halves[:, 3:]
         cosines += 1.0
         if cosines.min() < 1e-9:  # any axis across will do
@@ -136,9 +136,8 @@ class SpringBody:
             moves = rigid_moves(before.centers, now.centers)
             before = self._move_along(before, moves, self._frames.has_center)
         ways = now.tails - before.tails
-        squares, most = np.vecdot(ways, ways), (self._most_speed * elapsed) ** 2
-        if squares.max() > most:
-            jumps = squares > most
+        jumps = np.vecdot(ways, ways) > (self._most_speed * elapsed) ** 2
+        if np.count_nonzero(jumps):
             # Whole chains: a bone that is carried while its parent swings would tear them apart.
             chains = np.isin(self._frames.roots, self._frames.roots[jumps])
             moves = rigid_moves(before.frames[first], now.frames[first])

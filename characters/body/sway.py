@@ -72,8 +72,8 @@ class BodySway:
         self._breath = rotation_vectors(axes, [breath.get(name, none) for name, _ in there])
         sway = np.array([_SWAY_DEG.get(name, none) for name, _ in there]).reshape(-1, 3)
         vectors = np.radians(sway)[..., None] * np.swapaxes(axes, -1, -2) / math.sqrt(_WAVE_COUNT)
-        # Each sways by the sum of its waves, (n, 3 · waves, 3).
-        self._sway = np.tile(vectors, (1, _WAVE_COUNT, 1))
+        # Each sways by the sum of its waves, (n, 3, 3 · waves).
+        self._sway = np.tile(vectors.swapaxes(-1, -2), (1, 1, _WAVE_COUNT))
         rng = np.random.default_rng(seed)
         drawn = (_WAVE_COUNT, *sway.shape)
         rates = rng.uniform(_MIN_WAVE_HZ, _MAX_WAVE_HZ, drawn) * math.tau
@@ -111,7 +111,7 @@ class BodySway:
         vectors = self._breath * (depth * expressivity.amplitude)
         if calm > 1e-3:
             waves = np.sin(self._rates * self._time + self._phases)
-            vectors += (waves @ self._sway)[:, 0] * (calm * expressivity.amplitude)
+            vectors += np.vecdot(self._sway, waves) * (calm * expressivity.amplitude)
         if posture is not None:
             posture[: len(vectors)] += vectors
             vectors = posture

@@ -66,8 +66,10 @@ class Pose:
         matrices[..., 3, 3] = 1.0
         return matrices
 
-    def globals(self, skeleton: "Skeleton") -> Array:
+    def globals(self, skeleton: "Skeleton", world: Array | None = None) -> Array:
         """Return `character_from_joint` of every joint, (…, joints, 4, 4).
+
+        With `world_from_character` (4, 4), they are `world_from_joint`.
 
         By pointer doubling instead of a walk down the tree: after round n each matrix reaches 2ⁿ
         joints up, so a hierarchy of twelve levels takes four products over all joints.
@@ -78,6 +80,9 @@ class Pose:
         matrices = np.empty(shape)
         matrices[..., :-1, :, :] = locals_
         matrices[..., -1, :, :] = _WORLD
+        if world is not None:
+            for root in skeleton.roots:
+                matrices[..., root, :, :] = world @ matrices[..., root, :, :]
         for ancestors in skeleton.doubled_ancestors:
             matrices = matrices.take(ancestors, -3) @ matrices
         return matrices[..., :-1, :, :]
@@ -159,6 +164,11 @@ class Skeleton:
     def has_root_motion(self) -> bool:
         """Whether joint 0 carries the planar root motion, as in the bundled characters."""
         return self.names[0] == "root" and self.parents[0] == -1
+
+    @cached_property
+    def roots(self) -> tuple[int, ...]:
+        """The joints without a parent."""
+        return tuple(joint for joint, parent in enumerate(self.parents) if parent < 0)
 
     @cached_property
     def doubled_ancestors(self) -> tuple[NDArray[np.intp], ...]:

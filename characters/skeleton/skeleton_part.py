@@ -33,9 +33,12 @@ class SkeletonPart:
         """Return the numbers of joints in the part; any for −1."""
         return np.searchsorted(self.joints, np.maximum(np.array(joints, np.intp), 0))
 
-    def globals(self, pose: Pose) -> Array:
-        """Return `character_from_joint` of its joints, (…, joints, 4, 4), in poses of all."""
+    def globals(self, pose: Pose, world: Array | None = None) -> Array:
+        """Return `character_from_joint` of its joints, (…, joints, 4, 4), in poses of all.
+
+        With `world_from_character` (4, 4), they are `world_from_joint`.
+        """
         scales = None if pose.scales is None else pose.scales.take(self.joints, -2)
         places, turns = pose.translations, pose.rotations
         own = Pose(places.take(self.joints, -2), turns.take(self.joints, -2), scales)
-        return own.globals(self.skeleton)
+        return own.globals(self.skeleton, world)

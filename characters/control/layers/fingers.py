@@ -55,8 +55,8 @@ class FingersLayer:
         self._joints = np.array(turned, np.intp)
         halves = 0.5 * np.array(axes).reshape(-1, 3)
         pure = np.concatenate([halves, np.zeros((len(halves), 1))], axis=1)
-        # What is multiplied from the right by half a rotation vector, as a matrix for rows.
-        self._halves = rotations.multiply(np.eye(4), pure[:, None])
+        # What is multiplied from the right by half a rotation vector, as a matrix for columns.
+        self._halves = rotations.multiply(np.eye(4), pure[:, None]).swapaxes(1, 2).copy()
         self._squares = np.vecdot(halves, halves)[:, None]
         rng = np.random.default_rng([seed, 6])
         # A wave for each finger, then one for each hand.
@@ -81,6 +81,6 @@ class FingersLayer:
         local = pose.rotations.copy()
         own = local.take(self._joints, 0)
         # Half angles so small are their sines, to a thousandth.
-        across = (own[:, None] @ self._halves)[:, 0]
+        across = np.vecdot(self._halves, own[:, None])
         local[self._joints] = np.sqrt(1.0 - self._squares * sines * sines) * own + sines * across
-        return Pose(pose.translations, local, pose.scales, pose.morphs)
+        return pose.with_rotations(local)
