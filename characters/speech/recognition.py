@@ -52,7 +52,7 @@ DITHER = 0.002
 BEAM, WORD_BEAM = 1e-44, 1e-27
 """How much less likely a path is that is given up: wider beams take longer, and hear no more."""
 
-MAX_DEFICIT, MAX_WORD_DEFICIT = 4.2, 4.4
+MAX_DEFICIT, MAX_WORD_DEFICIT = 4.2, 5.0
 """Greatest `Hearing.deficit` of what was said, and that of its worst word; guarded by
 `python -m tests.bench.listening`, which judges by other voices than they were chosen with."""
 
