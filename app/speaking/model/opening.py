@@ -28,7 +28,7 @@ def open_answerer(options: SessionOptions, *, replays: bool, waits: bool) -> Ans
 
     @cache
     def model_of(name: str) -> LanguageModel | None:
-        scenario = find_scenario(name)
+        scenario: object = find_scenario(name)
         if not isinstance(scenario, ConversingScenario) or scenario.conversation is None:
             return None
         return ChatModel(address, options.model_name, scenario.conversation, scenario.gestures)
