@@ -46,6 +46,10 @@ USUAL_PAUSES = PauseLaw()
 RAMP_S = 0.4
 """How long small variations take to come and go [s]."""
 
+MAX_HASTE = 2.0
+"""How much faster than recorded a shift is made at most, for an act that begins soon: one that then
+comes too late goes over into the act."""
+
 _UNHURRIED = 10**6  # frames
 _KEPT_S = 2.0  # played time that can still be sampled [s]
 
@@ -175,6 +179,13 @@ class IdleMotion:
         self._posture = RestingPosture(posture, nearest_balance(database, posture), 0.0, cut=True)
         self._calming = min(round(RAMP_S * rate), len(rows))
         return (self._made + len(rows) - 1 - asked) / rate
+
+    def await_act(self, first: Pose | None, within: float) -> None:
+        """Go to the pose in which an act begins; see `StandingMotion`."""
+        if first is None:
+            self.rest(within, MAX_HASTE)
+        else:
+            self.lead_to(self._database.kind.vectors(first), within, MAX_HASTE)
 
     def rest(self, within: float = math.inf, haste: float = math.inf) -> None:
         """End the shift under way, and begin none by itself; the parameters are of `lead_to`."""

@@ -32,11 +32,6 @@ TRANSITION_S = 0.7
 """How long it goes over into an act and back [s]."""
 
 
-MAX_HASTE = 2.0
-"""How much faster than recorded a shift is made at most, for an act that begins soon: one that then
-comes too late goes over into the act."""
-
-
 @dataclass(frozen=True)
 class PlantedPaws:
     """Where the paws of a quadruped stand."""
@@ -106,10 +101,7 @@ class StandingPerson:
         self._awaits = True
         if self._next or self._machine.state:
             self._go_on()
-        if first is None:
-            self.idle.rest(within, MAX_HASTE)
-        else:
-            self.idle.lead_to(self.idle.database.kind.vectors(first), within, MAX_HASTE)
+        self.idle.await_act(first, within)
 
     def go_on(self) -> None:
         """Shift the weight again after `await_act`."""
