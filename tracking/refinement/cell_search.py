@@ -232,7 +232,9 @@ class CellSearch:
         }
         alone = joining <= set(run.read)
         read = {*run.read, *joining}
-        return replace(run, read=read, markers=seen.markers, alone=alone, step="align")
+        # Where many faces are seen, the look was a first step towards them.
+        start = seen.camera_from_cube if len(joining) > MAX_FINE_FACES else run.start
+        return replace(run, start=start, read=read, markers=seen.markers, alone=alone, step="align")
 
     def _align(self, run: CellRun) -> CellRun:
         """Align the faces that were read, or seen at once."""

@@ -47,7 +47,7 @@ MAX_CHANGE, BLOCK_PX = 2.0, 16
 """A picture shows the same as before where the mean of no block of so many pixels differs by more
 than this [grey levels]: noise does not change it, and whatever moves does."""
 
-BUDGET_PICTURES = 2.2
+BUDGET_PICTURES = 1.5
 """What the trials of one call may cost beside the passes that each call begins with, counted in
 pictures that are read: about as many detections by OpenCV."""
 
