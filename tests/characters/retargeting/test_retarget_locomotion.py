@@ -317,6 +317,7 @@ def test_made_clips_look_ahead_though_the_neck_was_recorded_straight(human):
     assert np.ptp(pitches[1]) > 20.0
 
 
+@pytest.mark.slow(reason="a recording is retargeted to a walk")
 @pytest.mark.usefixtures("straight_only")
 def test_steps_of_a_single_limping_stride_are_made_alike(human):
     walk = exported(human, "Walk", 1.6)
