@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -140,9 +141,11 @@ def _entry_point(name: str) -> EntryPoint | None:
     points = sorted((each for each in added_scenarios() if each.name == name), key=_package)
     packages = [*(["cubeling"] if name in SCENARIOS else []), *map(_package, points)]
     if not packages:
+        near = get_close_matches(name, scenario_names(), 1)
+        hint = f"; did you mean {near[0]}? Choose" if near else ": choose"
         known = ", ".join(scenario_names())
         raise AppError(
-            f"no scenario is called '{name}': choose one of {known}, or a .toml file of rules, "
+            f"no scenario is called '{name}'{hint} one of {known}, or a .toml file of rules, "
             "or the .xml file of a dialogue"
         )
     if len(packages) > 1:

@@ -11,6 +11,7 @@ HEAVY = ("numpy", "cv2", "av", "moderngl", "pydantic", "mcap", "paho", "serial",
 
 WRONG = {
     "play nosuch": "no scenario is called 'nosuch'",
+    "play compagnon": "did you mean companion?",
     "play companion --realism x": "a picture cannot follow 'x'",
     "play companion --inside x": "the character cannot be inside 'x'",
     "play companion --quality x": "there is no quality 'x'",
