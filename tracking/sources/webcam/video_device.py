@@ -59,7 +59,11 @@ def check_present(device: int | str, path: Path) -> None:
         return
     if not path.exists():
         others = sorted(str(other) for other in Path("/dev").glob("video*"))
-        there = f"there are {', '.join(others)}" if others else "no camera is connected"
+        there = (
+            f"there are {', '.join(others)}"
+            if others
+            else "no camera is connected; --source FILE takes a video or a recording"
+        )
         raise TrackingError(f"camera {device} does not exist ({path}): {there}")
     if not os.access(path, os.R_OK | os.W_OK):
         raise TrackingError(
