@@ -234,7 +234,7 @@ def report(
 ) -> None:
     """Write the tables of a study, and its report as one page.
 
-    Needs SciPy: pip install "cubeling[study]"
+    Needs SciPy: pip install scipy
 
     Example: cubeling study report trial
     """
@@ -276,7 +276,7 @@ def _needs_scipy() -> None:
     from importlib.util import find_spec
 
     if find_spec("scipy") is None:
-        raise AppError('the report of a study needs SciPy: pip install "cubeling[study]"')
+        raise AppError("the report of a study needs SciPy: pip install scipy")
 
 
 def _report(folder: Path, console: Console) -> None:
