@@ -34,6 +34,7 @@ from cubeling.characters.retargeting.locomotion.looking_ahead import face_ahead
 from cubeling.characters.retargeting.locomotion.recorded_gait import (
     MAX_RATE_HZ,
     extract_gait,
+    mirror_rigidly,
     on_character,
 )
 from cubeling.characters.retargeting.recording import Recording
@@ -43,7 +44,6 @@ from cubeling.characters.skeleton.pose import Pose
 
 _MAX_STRAIGHT_ANGULAR = 8.0  # degrees; less is straight
 _MIRROR_COST = 1.0  # degrees of Angular by which a gait that needs no mirror is preferred
-_MAX_RIGID_TRAVEL = 1e-4  # leg lengths; so far do joints move in files that round their places
 _IDLE_RATE_HZ, _IDLE_FRAMES = 30.0, 31
 # Speed in a curve relative to straight on, by Angular: people slow down to turn.
 _CURVE_SPEED: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
@@ -156,12 +156,7 @@ def _nearest_gait(
 def _mirror(gait: GaitCycle, mirror: Mirror) -> GaitCycle:
     """Return a gait mirrored and shifted by half a cycle, so that it begins with the left foot."""
     clip = gait.clip
-    image = mirror.clip(clip)
-    # Bones keep their lengths if a body is not exactly symmetric.
-    travel = np.ptp(clip.in_place.translations, axis=0).max(-1)
-    rigid = np.flatnonzero(travel < _MAX_RIGID_TRAVEL * gait.rig.leg_length)
-    rigid = rigid[rigid > 0]
-    image.poses.translations[:, rigid] = clip.poses.translations[:, rigid]
+    image = mirror_rigidly(clip, mirror, gait.rig)
     count = len(image) - 1
     order = (np.arange(len(image)) + count // 2) % count
     poses = move_to_trajectory(image.in_place[order], image.track)

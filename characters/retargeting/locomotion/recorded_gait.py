@@ -48,6 +48,7 @@ MAX_RATE_HZ = 60.0
 """Finer recordings are resampled."""
 
 _MAX_STRAIGHT_TURN = math.radians(20.0)  # of a stride whose steps are made alike
+_MAX_RIGID_TRAVEL = 1e-4  # leg lengths; so far do joints move in files that round their places
 _MAX_REPEATED_SEAM = 0.1  # leg lengths; parts of a loop that differ more do not repeat
 
 
@@ -156,7 +157,7 @@ def _image_of(
     if walker.anatomy.kind != "humanoid":
         return None
     if mirror is not None:
-        return mirror.clip(clip)
+        return mirror_rigidly(clip, mirror, Rig(walker.skeleton, walker.anatomy))
     with suppress(CharacterError):
         other = Mirror.of(recording.skeleton).clip(recording.clip)
         image, _ = on_character(replace(recording, clip=other), character, walker)
@@ -164,6 +165,16 @@ def _image_of(
         track = clip.track * [-1.0, 1.0, -1.0]
         return replace(image, poses=with_root_trajectory(image.poses, children, track))
     return None
+
+
+def mirror_rigidly(clip: Clip, mirror: Mirror, rig: Rig) -> Clip:
+    """Return a mirrored clip whose bones keep their lengths, also on a slightly uneven body."""
+    image = mirror.clip(clip)
+    travel = np.ptp(clip.in_place.translations, axis=0).max(-1)
+    rigid = np.flatnonzero(travel < _MAX_RIGID_TRAVEL * rig.leg_length)
+    rigid = rigid[rigid > 0]
+    image.poses.translations[:, rigid] = clip.poses.translations[:, rigid]
+    return image
 
 
 def _with_like_steps(
