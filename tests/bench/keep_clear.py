@@ -2,7 +2,8 @@
 
 It plays the bundled recordings with the poses of the cube that the tracker finds in them, and
 random drives with true poses, in all scenarios: with characters that know of the cube, and with
-ones that do not. The hand is that of the synthetic camera, whose place is known.
+ones that do not. The hand is that of the synthetic camera, whose place is known. Two players drive
+side by side, without hands.
 
 depth, > 2 mm
     How deep the deepest skinned vertex of the character is in the cube, and the share of frames in
@@ -78,7 +79,9 @@ TABLE = look_at(EYE_M, LOOK_AT_M)
 
 
 class _NoObstacles(Obstacles):
-    def update(self, state: CubeState, controls: CubeControls) -> tuple[Obstacle, ...]:
+    def update(
+        self, state: CubeState, controls: CubeControls, *, from_left: bool = False
+    ) -> tuple[Obstacle, ...]:
         return ()
 
 
@@ -332,14 +335,8 @@ def play_two(takes: tuple[Take, Take], who: Surface, measures: tuple[Measure, Me
     """Play the takes of two players side by side, and measure the character of each."""
     cubes = [CubeModel.load(name) for name in PLAYERS_CUBES]
     first = takes[0]
-    playground = Playground(
-        first.scenario,
-        first.intrinsics,
-        cube=cubes[0],
-        character=who.character,
-        others=[who.character],
-        further_cubes=cubes[1:],
-    )
+    two = {"cube": cubes[0], "others": [who.character], "further_cubes": cubes[1:]}
+    playground = Playground(first.scenario, first.intrinsics, **two)  # type: ignore[arg-type]
     image = np.zeros((*first.intrinsics.size[::-1], 3), np.uint8)
     for measure in measures:
         measure.last = None
@@ -382,13 +379,13 @@ def main() -> int:
             # At once: the whole takes a quarter of an hour.
             console.print(_line(*measure.row(name, "on" if kind is Playground else "off")))
             failed |= kind is Playground and not measure.passes
-    who, measures = surfaces["vleo"], (Measure(), Measure())
+    body, measures = Surface(Character.load("vleo")), (Measure(), Measure())
     for number in range(given.pairs):
         left, right = (
             drive(2 * number + side, "companion", 0.06, x, PLAYERS_REACH_M)
             for side, x in enumerate((-PLAYERS_REACH_M, PLAYERS_REACH_M))
         )
-        play_two((left, right), who, measures)
+        play_two((left, right), body, measures)
     for player, measure in zip(("first", "second"), measures if given.pairs else (), strict=False):
         console.print(_line(*measure.row(f"{given.pairs} drives, {player} of two", "on")))
         failed |= not measure.passes

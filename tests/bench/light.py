@@ -354,9 +354,9 @@ def main() -> None:
         measuring, preparing, detecting = cost(context, name, roughness, given.frames)
         add(f"{name}, {who}: measuring, of detection", measuring / detecting, None)
         add("  measuring and preparing", (measuring + preparing) / detecting, COST_BAR)
-    for name, who in (("follow", None), ("companion", None), ("companion", "human:metal")):
-        ratio = line(context, name, who, given.frames)
-        add(f"{name}, {who or 'as it is'}: the line with it over without", ratio, None)
+    for name, body in (("follow", None), ("companion", None), ("companion", "human:metal")):
+        ratio = line(context, name, body, given.frames)
+        add(f"{name}, {body or 'as it is'}: the line with it over without", ratio, None)
     context.release()
     Console().print(table)
     sys.exit(1 if missed else 0)

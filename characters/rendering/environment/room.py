@@ -189,4 +189,6 @@ class RoomMaps:
 
 
 def _contains(outer: slice, inner: slice) -> bool:
-    return (outer.start <= inner.start and inner.stop <= outer.stop) or inner.stop == inner.start
+    return bool(
+        (outer.start <= inner.start and inner.stop <= outer.stop) or inner.stop == inner.start
+    )
