@@ -113,6 +113,7 @@ OTHERWISE = {
     "app/ui/web/page.py": "files of the program",
     "app/ui/video_file.py": "written as `.partial`, and renamed",
     "app/workshop/exporting/writing.py": "the unfinished files of `whole_file`",
+    "app/workshop/study/window/film_sound.py": "FFmpeg opens what `STIMULUS_FILE` has checked",
     "characters/formats/gltf/materials.py": "a picture in memory",
     "characters/rendering/programs.py": "a file of the program",
     "characters/speech/audio.py": "FFmpeg opens what `SOUND_FILE` has opened",

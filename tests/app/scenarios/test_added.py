@@ -16,6 +16,7 @@ from cubeling.app.session import messages, session_info
 from cubeling.app.session.encoding import decode
 from cubeling.characters import CharacterCommand
 from cubeling.toml_file import parse
+from tests.app.conftest import load_command_once
 
 PAGE = Path(app.__file__).parents[1] / "docs" / "your-own-scenario.md"
 (TOML,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
@@ -54,9 +55,11 @@ def install(tmp_path_factory, monkeypatch):
             monkeypatch.delitem(sys.modules, f"cubeling.app.commands.play.{command}", raising=False)
         importlib.invalidate_caches()
         added_scenarios.cache_clear()
+        load_command_once.cache_clear()
 
     yield install
     added_scenarios.cache_clear()
+    load_command_once.cache_clear()
     for module in [name for name in sys.modules if name.startswith("cubeling_")]:
         del sys.modules[module]
     for command in LISTING:

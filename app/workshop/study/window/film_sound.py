@@ -10,6 +10,7 @@ import numpy as np
 from cubeling.app.errors import AppError
 from cubeling.app.sound import SAMPLE_RATE, Loudspeaker, Mixer, SoundBank, SoundOutput
 from cubeling.app.sound.synthesis import Array
+from cubeling.app.workshop.study.participants.stimulus_files import STIMULUS_FILE
 from cubeling.characters import CharacterError
 from cubeling.characters.speech import read_speech, resample
 from cubeling.robot import Closeable
@@ -26,6 +27,7 @@ def sound_of(film: Path) -> Array:
 
     Raises AppError if it has sound that cannot be read.
     """
+    STIMULUS_FILE.check(film)
     try:
         with av.open(f"file:{film}", metadata_errors="replace") as container:
             if not container.streams.audio:

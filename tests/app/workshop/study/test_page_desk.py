@@ -94,11 +94,14 @@ class Browser:
         return np.asarray(cv2.imdecode(np.frombuffer(data, np.uint8), 1))
 
     async def sheet(self):
-        """Return the next sheet with a form, or the last one."""
+        """Return the next sheet with a form, or the last one; one may come again."""
         while True:
             message = await asyncio.wait_for(self._socket.receive(), 20.0)
             said = message.json() if message.type == aiohttp.WSMsgType.TEXT else {}
-            if said.get("do") == "sheet" and ("<form" in said["html"] or said.get("over")):
+            if said.get("do") != "sheet":
+                continue
+            is_new = "<form" in said["html"] and said["number"] != self.number
+            if is_new or said.get("over"):
                 self.number = said["number"]
                 return said["html"]
 

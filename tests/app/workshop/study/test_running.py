@@ -182,6 +182,7 @@ def test_scripted_users_make_pleo_happy_in_time_and_sooner_with_half_the_turns()
     assert np.mean(times[1.0]) < np.mean(times[2.0])
 
 
+@pytest.mark.slow(reason="the channels of a whole recording are read")
 def test_a_task_is_judged_by_the_channels_of_its_recording(scripted_session):
     session = scripted_session("companion")
     task = StudyTask("kiss", "", "companion", Goal("action", "kiss", hold_s=0.5))
