@@ -46,9 +46,8 @@ class McapIndex:
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
-        self._size = file.seek(
-            0, os.SEEK_END
-        )  # no record is longer: a damaged length takes no more
+        # No record is longer than the file: a damaged length takes no memory.
+        self._size = file.seek(0, os.SEEK_END)
         file.seek(0)
         summary = SeekingReader(file, record_size_limit=self._size).get_summary()
         if summary is None:
