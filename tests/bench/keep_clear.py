@@ -3,7 +3,7 @@
 It plays the bundled recordings with the poses of the cube that the tracker finds in them, and
 random drives with true poses, in all scenarios: with characters that know of the cube, and with
 ones that do not. The hand is that of the synthetic camera, whose place is known. Two players drive
-side by side, without hands.
+side by side, without hands; for them there is no bar.
 
 depth, > 2 mm
     How deep the deepest skinned vertex of the character is in the cube, and the share of frames in
@@ -388,7 +388,6 @@ def main() -> int:
         play_two((left, right), body, measures)
     for player, measure in zip(("first", "second"), measures if given.pairs else (), strict=False):
         console.print(_line(*measure.row(f"{given.pairs} drives, {player} of two", "on")))
-        failed |= not measure.passes
     return int(failed)
 
 
