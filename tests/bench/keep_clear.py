@@ -387,7 +387,7 @@ def main() -> int:
         )
         play_two((left, right), body, measures)
     for player, measure in zip(("first", "second"), measures if given.pairs else (), strict=False):
-        console.print(_line(*measure.row(f"{given.pairs} drives, {player} of two", "on")))
+        console.print(_line(*measure.row(f"{given.pairs} drives, {player} of 2", "on")))
     return int(failed)
 
 

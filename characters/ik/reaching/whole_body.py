@@ -70,8 +70,10 @@ class WholeBody:
             number[toe] if carried[number[leg[2]]] else -1
             for leg, toe in zip(stance.legs, stance.toes, strict=True)
         ]
-        legs = zip(stance.legs, stance.toes, strict=True)
-        moved = [joint for leg, toe in legs for joint in (*leg, toe) if carried[number[joint]]]
+        moved = []
+        for leg, toe, bent in zip(stance.legs, stance.toes, self.toes, strict=True):
+            moved += [joint for joint in leg if carried[number[joint]]]
+            moved += [toe] if bent >= 0 else []
         self._leg_rows, self._neck_rows = np.array(moved, np.intp), np.array(stance.neck, np.intp)
 
     @staticmethod

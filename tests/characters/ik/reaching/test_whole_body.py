@@ -1,5 +1,6 @@
 """Whole bodies that reach as one tree: knees, hips, trunk and head for hands, over planted feet."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -181,3 +182,20 @@ def test_a_body_without_legs_to_stand_on_keeps_its_pelvis() -> None:
 
 def test_a_body_on_four_legs_reaches_with_torso_and_front_legs() -> None:
     assert WholeBody.of(bundled("vleo").upper) is None
+
+
+@pytest.mark.parametrize("detached", [False, True])
+def test_feet_without_toes_stay_where_they_are_also_beside_their_legs(detached: bool) -> None:
+    character, _, standing = human()
+    joints, parents = character.anatomy.joints, list(character.skeleton.parents)
+    feet = [joints[f"{side}Foot"] for side in SIDES]
+    for foot in feet if detached else ():
+        parents[foot] = parents[joints["hips"]]
+    skeleton = replace(character.skeleton, parents=tuple(parents))
+    toeless = {part: joint for part, joint in joints.items() if "Toes" not in part}
+    whole = WholeBody.of(type(character.upper_body)(skeleton, Anatomy("humanoid", toeless)))
+    assert whole is not None
+    before = standing.globals(skeleton)[feet]
+    pose = whole.reach(standing, HandTarget(at(PLACES["low"])))
+    assert not np.array_equal(pose.rotations, standing.rotations)
+    assert np.abs(pose.globals(skeleton)[feet] - before).max() < 0.002 * character.height
