@@ -38,6 +38,7 @@ from tests.campaigns.faulty_camera import (
     FaultyPhone,
     Sent,
     faulty_phone,
+    pictures,
     usual,
 )
 from tests.virtual_screen import VirtualScreen
@@ -167,6 +168,7 @@ class Driver:
     exposed: float | None = None
 
     def __init__(self, fault: Fault) -> None:
+        pictures()  # a camera that makes them while it is read is late
         self._fault = fault
         self._number = self._since = 0
         self.begin = math.inf

@@ -95,6 +95,7 @@ class FaultyPhone(ThreadingHTTPServer):
 
     def __init__(self) -> None:
         super().__init__(("127.0.0.1", 0), _Stream)
+        pictures()  # a phone that makes them while it is asked is late
         self.fault: Fault | None = None
         self.streams = 0
 
