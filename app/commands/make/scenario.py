@@ -48,7 +48,7 @@ def new(
     folder = templates.write_package(name)
     console.print(
         f"[bold]{escape(str(folder))}[/] is written. Install it, test it, and play it:\n"
-        f"[cyan]python -m pip install --editable {escape(str(folder))}\n"
+        f"[cyan]python -m pip install pytest --editable {escape(str(folder))}\n"
         f"python -m pytest {escape(str(folder))}\n"
         f"cubeling play {escape(name)}[/]"
     )

@@ -122,6 +122,7 @@ def render(options: SessionOptions, console: Console) -> None:
     )
     ending = end_card(options.scenario)
     play_session(options, f"rendering {options.output.name}", ending=ending)
+    console.print("Next, print the cube: [cyan]cubeling cube companion[/]")
 
 
 def end_card(scenario: str) -> EndCard:

@@ -201,6 +201,8 @@ def play(
 
     check_cubes(scenario, options.cubes)  # before a display is missing
     if options.windowed and not has_display():
-        raise AppError("there is no display here: write a video with --output FILE.mp4")
+        raise AppError(
+            "there is no display here: write a video with --output FILE.mp4, or add --no-pictures"
+        )
     with instruments.open() as opened:
         play_session(options, f"playing {scenario}", instruments=opened, preferences=kept)

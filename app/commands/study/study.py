@@ -156,7 +156,7 @@ def run(
         run_simulated(study, simulated)
         _report(output, console)
         pilot_run = ["cubeling", "study", "run", protocol, "-o", "pilot", "--pilot"]
-        words = shlex.join([*pilot_run, "--participant", "X1", "--page"])
+        words = shlex.join([*pilot_run, "--participant", "X1", "--window"])
         console.print(Text.assemble("Next, try it yourself: ", (words, "cyan")))
         return
     from datetime import datetime
