@@ -12,8 +12,8 @@ LOOPBACK = "127.0.0.1"
 VMC_PORT = 39539
 """Where receivers of the VMC protocol listen unless they are told otherwise."""
 
-
 MAX_PORT = 65535
+"""The last port that there is."""
 
 
 @dataclass(frozen=True)

@@ -68,16 +68,17 @@ class InstrumentOptions:
     def __post_init__(self) -> None:
         if self.wizard_file is not None and not self.wizard:
             raise AppError("--wizard-file has the buttons of --wizard: give that too")
-        for option, texts, port in (
-            ("--osc", [self.osc], None),
-            ("--osc-in", [self.osc_in], None),
-            ("--vmc", [None] if self.vmc is None else self.vmc.split(","), VMC_PORT),
-        ):
-            for text in texts:
-                if text is not None:
-                    UdpAddress.of(text, option, port)
+        for option, text in (("--osc", self.osc), ("--osc-in", self.osc_in)):
+            if text is not None:
+                UdpAddress.of(text, option)
+        self.vmc_addresses()
         if self.lsl_scope not in LSL_SCOPES:
             raise AppError(f"--lsl-scope is one of {', '.join(LSL_SCOPES)}, not {self.lsl_scope}")
+
+    def vmc_addresses(self) -> list[UdpAddress]:
+        """Return where the cast is sent; raises AppError for an address that is none."""
+        texts = [] if self.vmc is None else self.vmc.split(",")
+        return [UdpAddress.of(text, "--vmc", VMC_PORT) for text in texts]
 
 
 @contextmanager
@@ -111,8 +112,7 @@ def open_instruments(
         if options.vmc is not None:
             from cubeling.app.bridges.vmc import VmcOut
 
-            targets = [UdpAddress.of(each, "--vmc", VMC_PORT) for each in options.vmc.split(",")]
-            opened.append(closing.enter_context(VmcOut(*targets)))
+            opened.append(closing.enter_context(VmcOut(*options.vmc_addresses())))
         if options.lsl or options.lsl_in is not None:
             configure_lsl(options.lsl_scope)
             from cubeling.app.bridges.lsl import LslIn, LslOut

@@ -334,10 +334,11 @@ def play(take: Take, kind: type[Playground], who: Surface, measure: Measure) -> 
 def play_two(takes: tuple[Take, Take], who: Surface, measures: tuple[Measure, Measure]) -> None:
     """Play the takes of two players side by side, and measure the character of each."""
     cubes = [CubeModel.load(name) for name in PLAYERS_CUBES]
-    first = takes[0]
-    two = {"cube": cubes[0], "others": [who.character], "further_cubes": cubes[1:]}
-    playground = Playground(first.scenario, first.intrinsics, **two)  # type: ignore[arg-type]
-    image = np.zeros((*first.intrinsics.size[::-1], 3), np.uint8)
+    scenario, camera = takes[0].scenario, takes[0].intrinsics
+    playground = Playground(
+        scenario, camera, cube=cubes[0], others=[who.character], further_cubes=cubes[1:]
+    )
+    image = np.zeros((*camera.size[::-1], 3), np.uint8)
     for measure in measures:
         measure.last = None
     topic = f"/cubes/{playground.players[1].name}/state"
@@ -347,7 +348,7 @@ def play_two(takes: tuple[Take, Take], who: Surface, measures: tuple[Measure, Me
         other = step.others[0]
         second = replace(step, state=states[1], outcome=other.outcome, posed=other.posed)
         for seen, cube, measure in zip((step, second), cubes, measures, strict=True):
-            measure.add(seen, who, first.intrinsics, cube.edge, np.zeros((0, 7)))
+            measure.add(seen, who, camera, cube.edge, np.zeros((0, 7)))
 
 
 def main() -> int:

@@ -48,7 +48,7 @@ class Tile:
         )
 
 
-TILES = (
+ROUGHNESS_TILES = (
     Tile(0.0, 80, 1, 1, 1),
     Tile(0.25, 48, 1, 83, 16),
     Tile(0.375, 32, 51, 83, 16),
@@ -59,10 +59,10 @@ TILES = (
 """The squares, in rows. A surface has the nearest one: two for each texel that is drawn would cost
 more than all else there. Of roughness ⅛, what is mirrored is no wider than a texel of the first."""
 
-ROWS = (0, 82, 132, 158)
+TILE_ROWS_PX = (0, 82, 132, 158)
 """First row of the texture of each row of squares, and the end of the last."""
 
-HEIGHT, WIDTH = ROWS[-1], 84
+HEIGHT, WIDTH = TILE_ROWS_PX[-1], 84
 """Size of the texture."""
 
 STEPS_TO_ONE = 8
@@ -72,7 +72,7 @@ PARTS = 6
 """A map is filtered in so many steps, one a picture."""
 
 _STEPS = [
-    min(TILES, key=lambda each: abs(each.roughness - step / STEPS_TO_ONE))
+    min(ROUGHNESS_TILES, key=lambda each: abs(each.roughness - step / STEPS_TO_ONE))
     for step in range(STEPS_TO_ONE + 1)
 ]
 
@@ -94,7 +94,8 @@ def rows_between(least: float, most: float) -> slice:
     """
     first, last = (_STEPS[int(STEPS_TO_ONE * each + 0.5)].row for each in (least, most))
     return slice(
-        max(each for each in ROWS if each < first), min(each for each in ROWS if each > last)
+        max(each for each in TILE_ROWS_PX if each < first),
+        min(each for each in TILE_ROWS_PX if each > last),
     )
 
 
@@ -120,7 +121,7 @@ class ReflectionFilter:
         self._texels = light.view(np.complex128)[:, 0]  # four floats are taken as one number
         self._tiles = [
             (tile, taps, np.empty((tile.side**2, 4), np.float32))
-            for tile, taps in zip(TILES, _taps(), strict=True)
+            for tile, taps in zip(ROUGHNESS_TILES, _taps(), strict=True)
             if rows.start < tile.row < rows.stop
         ]
         self.done = 0
@@ -181,7 +182,7 @@ def _rimmed(square: Image) -> Image:
 @cache
 def _taps() -> tuple[_Taps, ...]:
     """Return the taps of each square."""
-    return tuple(_taps_of(octahedral_directions(tile.side), tile) for tile in TILES)
+    return tuple(_taps_of(octahedral_directions(tile.side), tile) for tile in ROUGHNESS_TILES)
 
 
 def _taps_of(towards: Array, tile: Tile) -> _Taps:

@@ -18,7 +18,7 @@ from cubeling.characters.rendering.environment.cube_map import (
 from cubeling.characters.rendering.environment.reflections import (
     HEIGHT,
     PARTS,
-    TILES,
+    ROUGHNESS_TILES,
     WIDTH,
     filter_at_once,
     octahedral_directions,
@@ -122,7 +122,7 @@ def test_harmonics_give_the_cosine_mean_of_the_light():
 def test_a_map_of_one_colour_is_that_at_every_roughness():
     texels = filter_at_once(pyramid(painted(np.full_like(WHITE, 0.5)).planes))
     value = LINEAR_FROM_SRGB[188]
-    for tile in TILES:
+    for tile in ROUGHNESS_TILES:
         square = texels[tile.box][..., :3]
         assert np.ptp(square) == 0
         assert (square[0, 0] / 255.0) ** 2 == pytest.approx(value, rel=0.005)
@@ -130,7 +130,7 @@ def test_a_map_of_one_colour_is_that_at_every_roughness():
 
 def test_squares_lie_apart_in_the_texture():
     taken = np.zeros((HEIGHT, WIDTH), int)
-    for tile in TILES:
+    for tile in ROUGHNESS_TILES:
         taken[tile.box] += 1
         assert taken[tile.box].size == (tile.side + 2) ** 2
     assert taken.max() == 1
@@ -140,7 +140,7 @@ def test_rough_surfaces_mirror_a_lobe_around_the_direction():
     lamp = np.array([0.3, 0.5, -0.81])
     texels = filter_at_once(pyramid(with_card(lamp, (1.0, 1.0, 1.0), 0.98).planes))
     brightest = []
-    for tile in TILES:
+    for tile in ROUGHNESS_TILES:
         square = texels[tile.box][1:-1, 1:-1, 0].ravel().astype(float)
         brightest.append(float(square.max()))
         if tile.side > 16:
@@ -151,7 +151,7 @@ def test_rough_surfaces_mirror_a_lobe_around_the_direction():
 
 def test_a_rim_goes_on_where_the_octahedron_does():
     texels = filter_at_once(pyramid(painted(0.5 + 0.4 * UNIT).planes))
-    square = texels[TILES[1].box].astype(float)
+    square = texels[ROUGHNESS_TILES[1].box].astype(float)
     inner = square[1:-1, 1:-1]
     step = np.abs(np.diff(inner, axis=0)).max()
     for rim, edge in ((square[0, 1:-1], inner[0]), (square[1:-1, -1], inner[:, -1])):
@@ -216,8 +216,8 @@ def test_only_squares_that_a_surface_mirrors_in_are_filtered(ctx):
     assert lighting is not None
     assert lighting.texture is not None
     texels = np.frombuffer(lighting.texture.read(), np.uint8).reshape(HEIGHT, WIDTH, 4)
-    written = [bool(texels[tile.box].any()) for tile in TILES]
-    assert written == [tile.roughness in (0.25, 0.375) for tile in TILES]
+    written = [bool(texels[tile.box].any()) for tile in ROUGHNESS_TILES]
+    assert written == [tile.roughness in (0.25, 0.375) for tile in ROUGHNESS_TILES]
     assert mirrored_by(maps, bright, 0.1).max() == pytest.approx(0.6, abs=0.01)
     maps.release()
 

@@ -74,7 +74,7 @@ Seen = tuple[Indices, Floats, Image]
 """Squares of four texels of the map, (n, 4), what share of each is covered, (n, 1, 1), and by which
 sRGB, (n, 1, 3)."""
 
-NOTHING: Seen = (
+NOTHING_SEEN: Seen = (
     np.zeros((0, 4), np.intp),
     np.zeros((0, 1, 1), np.float32),
     np.zeros((0, 1, 3), np.uint8),
@@ -191,10 +191,10 @@ class RoomMeter:
         rays = np.column_stack([self._projection.rays(outline), np.ones(5)]) @ rotation
         camera = -rotation.T @ origin
         if rays[0, 1] > -1e-6:  # its foot is above the horizon
-            return NOTHING
+            return NOTHING_SEEN
         foot = camera - camera[1] / rays[0, 1] * rays[0]
         if np.hypot(*(foot - CENTRE_M)[[0, 2]]) < MIN_DISTANCE_M:
-            return NOTHING
+            return NOTHING_SEEN
         # It is on the upright plane through the foot, turned to the camera.
         facing = (camera - foot) * (1.0, 0.0, 1.0)
         ways = facing @ (foot - camera) / (rays[1:] @ facing)
@@ -212,12 +212,12 @@ class RoomMeter:
         kept = np.flatnonzero((distance > 0.0) & (distance < _reaches(THING_PX)[near]))
         shown, pixels, _ = self._in_picture(CENTRE_M + distance[kept, None] * unit[kept])
         if not len(shown):
-            return NOTHING
+            return NOTHING_SEEN
         pixels = (pixels + 0.5) * scale - 0.5
         covered = _sampled(thing.pixels, pixels)
         there = np.flatnonzero(covered)
         if not len(there):
-            return NOTHING
+            return NOTHING_SEEN
         share = _floats(covered[there, None] / np.float32(255.0))
         texels = _blocks(THING_PX, ENVIRONMENT_PX)[near[kept[shown[there]]]]
         return texels, share[:, None], _sampled(small, pixels[there])[:, None]

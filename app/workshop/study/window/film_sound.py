@@ -18,7 +18,7 @@ from cubeling.robot import Closeable
 OPENING_S = 3.0
 """How long the first film waits for the loudspeaker [s], so that its sound is not late."""
 
-SIDE = 0.6
+PAIR_PAN = 0.6
 """Where the sound of a film is heard that is one of two, −1 left … 1 right."""
 
 
@@ -71,7 +71,7 @@ class FilmSounds(Closeable):
 
     def play(self, place: int, count: int, sound: Array) -> None:
         """Let a film be heard from its beginning; it is one of so many, from left to right."""
-        self._mixer.play(f"{place}", sound, SIDE * (2 * place - 1) if count == 2 else 0.0)
+        self._mixer.play(f"{place}", sound, PAIR_PAN * (2 * place - 1) if count == 2 else 0.0)
 
     def hush(self, count: int) -> None:
         """Let so many films fall silent."""
