@@ -21,7 +21,7 @@ from cubeling.app.session.encoding import (
 )
 from cubeling.app.session.file_records import READ_ERRORS
 from cubeling.app.session.inputs import RecordedInputs
-from cubeling.app.session.message_file import MessageFile
+from cubeling.app.session.message_file import MessageFile, cut_early
 from cubeling.app.session.recorder import CHUNK_BYTES, json_schema
 from cubeling.app.session.session_file import SessionFile
 from cubeling.files import whole_file
@@ -74,6 +74,8 @@ def join_parts(first: Path, path: Path, say: Callable[[str], None]) -> int:
     later = later_parts(first)
     with SessionFile(first, salvage=True) as session:
         session.check_begins()
+        if not session.is_whole and not session.info.frames:
+            raise cut_early(first)
         _tell_cut(session, say, is_last=not later)
     for number, part in enumerate(later, start=2):
         if part != part_path(first, number):

@@ -217,10 +217,13 @@ class MessageFile:
         if self._salvage:
             return frames, seconds
         if not frames:
-            raise AppError(
-                f"the session '{self.path}' was cut off before its first frame was whole"
-            )
+            raise cut_early(self.path)
         raise AppError(
             f"the session '{self.path}' was cut off: {quantity(frames, 'frame')} ({seconds:.1f} s) "
             "can be played with --salvage"
         )
+
+
+def cut_early(path: Path) -> AppError:
+    """Return the error of a session of which no frame can be read."""
+    return AppError(f"the session '{path}' was cut off before its first frame was whole")

@@ -120,6 +120,15 @@ def test_h264_parts_can_be_decoded_alone_and_are_cut_by_size(cubeling, short_ses
     assert count == SHORT_FRAMES
 
 
+def test_a_recording_without_a_whole_frame_is_not_joined(cubeling, short_session):
+    Path("cut.mcap").write_bytes(short_session.read_bytes()[:2000])
+    code, _, err = cubeling("join", "cut.mcap", "-o", "joined.mcap")
+    assert code == 2
+    assert err.count("\n") == 1
+    assert "cut.mcap' was cut off before its first frame was whole" in err
+    assert not Path("joined.mcap").exists()
+
+
 def test_a_kill_leaves_all_complete_parts_whole(short_session, tmp_path):
     copied = tmp_path / "killed"
     copied.mkdir()
