@@ -132,7 +132,8 @@ def test_a_second_phone_is_a_screen_and_each_may_become_the_camera(desk):
         assert await second.run(ROLE) == "Pantalla: otro es la cámara"
         await second.run("$('go').click()")
         await second.until("shown > 2")
-        assert await second.run("stream") is None, "its camera is not opened"
+        # On a loaded machine the first may be silent for so long that its place is given away.
+        assert await second.run("!stream || place === 'yours'"), "its camera is not opened"
         await second.run("roles.play.click()")
         await second.until("place === 'yours' && live()")
         await first.until("place === 'other' && !stream")
