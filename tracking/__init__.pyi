@@ -46,6 +46,7 @@ from cubeling.tracking.sources.streams.pushed import (
     ImageFeed as ImageFeed,
     PushedSource as PushedSource,
 )
+from cubeling.tracking.synthetic.plain_room import PlainRoom as PlainRoom
 from cubeling.tracking.tracker.frame_markers import FrameMarkers as FrameMarkers
 from cubeling.tracking.tracker.learned_camera import LearnedCamera as LearnedCamera
 from cubeling.tracking.tracker.print_check import (

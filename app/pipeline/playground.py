@@ -97,6 +97,8 @@ class Playground:
         When the character is in the cube, one of `INSIDE_CHOICES`.
     measured
         Whether the appearance of the pictures is measured although none is drawn.
+    plain
+        Whether the frames hold no pictures: a plain room is drawn in their place.
 
     Raises
     ------
@@ -127,6 +129,7 @@ class Playground:
         realism: Sequence[str] = tuple(REALISM_CHOICES),
         inside: str = "auto",
         measured: bool = False,
+        plain: bool = False,
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
@@ -137,8 +140,8 @@ class Playground:
         self.fixed = fixed
         """Whether the scenario cannot be changed now, so that the player is not told how."""
         parts = tuple(each for each in APPEARANCE_PARTS if each in realism)
-        self._renderer = StepRenderer(context, intrinsics, realism)
-        seen = parts if measured or context is not None else ()
+        self._renderer = StepRenderer(context, intrinsics, realism, plain=plain)
+        seen = parts if measured or (context is not None and not plain) else ()
         self.sight = Sight(self._renderer, intrinsics, seen)
         """The lens, and what is measured of the pictures."""
         self.play(scenario, cube, character)
@@ -167,7 +170,7 @@ class Playground:
         self.players = make_players(cubes, self._robots, self.intrinsics, self.known_cubes)
         """Who plays, each with a cube."""
         self._detectors = {each.dictionary: MarkerDetector(each.dictionary) for each in cubes}
-        self.sight.begin(cube)
+        self.sight.begin(cubes)
         self._window = CubeWindow(cube, character, scenario.roles, self._inside)
 
     @property
@@ -256,7 +259,7 @@ class Playground:
         for name, value in content.items():
             setattr(self, name, value)
         self.sight.look_through(self.tracked.intrinsics)
-        self.sight.begin(self.cube)
+        self.sight.begin([each.cube for each in self.players])
 
     def adjust(self, settings: ScenarioSettings, look: str) -> None:
         """Play on with other settings, as far as the scenarios of the cast can be adjusted."""

@@ -37,10 +37,10 @@ class Sight:
         self.lens = lens
         self._renderer.look_through(lens)
 
-    def begin(self, cube: CubeModel) -> None:
-        """Forget what the pictures have shown so far."""
-        self._renderer.play(cube)
-        self._measure_from_now(cube)
+    def begin(self, cubes: Sequence[CubeModel]) -> None:
+        """Forget what the pictures have shown so far; the cubes are those of the players."""
+        self._renderer.play(cubes)
+        self._measure_from_now(cubes[0])
 
     def follow(self, state: CubeState, cube: CubeModel) -> None:
         """Look through the lens of a state."""

@@ -15,7 +15,7 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.pipeline.table.props import PosedBody
 from cubeling.characters import PosedCharacter
 from cubeling.characters.rendering import FULL, Box, CameraView, Focus, Quality, SceneCharacter
-from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics
+from cubeling.tracking import CubeModel, CubeState, Frame, Intrinsics, PlainRoom
 
 if TYPE_CHECKING:
     import moderngl
@@ -77,6 +77,8 @@ class StepRenderer:
         Of the camera; the pictures have their size.
     realism
         What makes the characters look real, of `REALISM_CHOICES`.
+    plain
+        Whether a plain room is drawn with the cubes in it, as the frames hold no pictures.
 
     Raises
     ------
@@ -85,17 +87,28 @@ class StepRenderer:
     """
 
     def __init__(
-        self, context: "moderngl.Context | None", intrinsics: Intrinsics, realism: Sequence[str]
+        self,
+        context: "moderngl.Context | None",
+        intrinsics: Intrinsics,
+        realism: Sequence[str],
+        *,
+        plain: bool = False,
     ) -> None:
         self._context, self._intrinsics, self._realism = context, intrinsics, tuple(realism)
+        self._plain = plain and context is not None
+        self._room: PlainRoom | None = None
+        self._cubes: tuple[CubeModel, ...] = ()
         self._stage = None if context is None else _stage(context, intrinsics.size)
         self._close: Stage | None = None
         self._quality = FULL
-        self._edge, self._focus_distance = 0.0, FocusDistance()
+        self._focus_distance = FocusDistance()
 
-    def play(self, cube: CubeModel) -> None:
-        """Begin with another cube: what the pictures have shown so far is forgotten."""
-        self._edge, self._focus_distance = cube.edge, FocusDistance()
+    def play(self, cubes: Sequence[CubeModel]) -> None:
+        """Begin with other cubes of the players: what the pictures have shown is forgotten."""
+        self._focus_distance = FocusDistance()
+        if self._plain and [*map(id, cubes)] != [*map(id, self._cubes)]:
+            self._room = PlainRoom(self._intrinsics, cubes)
+        self._cubes = tuple(cubes)
         if self._stage is not None:
             self._stage.forget()
 
@@ -106,6 +119,8 @@ class StepRenderer:
             self._stage = _stage(self._context, intrinsics.size)
             self._stage.quality = self._quality
         self._intrinsics = intrinsics
+        if self._room is not None:
+            self._room.look_through(intrinsics)
 
     @property
     def in_software(self) -> bool:
@@ -129,7 +144,7 @@ class StepRenderer:
 
     def expect(self, frame: Frame) -> None:
         """Begin to draw a frame, as far as nothing of what is in it is known."""
-        if self._stage is not None:
+        if self._stage is not None and not self._plain:
             matrix, distortion = self._intrinsics.matrix, self._intrinsics.distortion
             self._stage.expect(frame.image, matrix, distortion)
 
@@ -137,7 +152,8 @@ class StepRenderer:
         """Draw the picture of a step; return None without a graphics context."""
         if self._stage is None:
             return None
-        focus = self._focus_distance.update(step.state) if "focus" in self._realism else None
+        focused = "focus" in self._realism and not self._plain
+        focus = self._focus_distance.update(step.state) if focused else None
         lead, *others = cast
         on_table = step.controls.camera_from_table is not None
         seen = lead.body.posed.visible and on_table
@@ -187,14 +203,14 @@ class StepRenderer:
         pose = step.state.camera_from_cube
         box = None if step.interior is None else step.interior.box
         if box is None and pose is not None:
-            box = Box(pose, self._edge)
+            box = Box(pose, self._cubes[0].edge)
         others = (
             Box(each.state.camera_from_cube, each.edge)
             for each in step.players
             if each.state.camera_from_cube is not None
         )
         view = CameraView(
-            step.frame.image,
+            self._picture(step),
             self._intrinsics.matrix,
             self._intrinsics.distortion,
             step.controls.camera_from_table,
@@ -202,7 +218,7 @@ class StepRenderer:
             focus=focus,
         )
         known = step.appearance
-        if known is None:
+        if known is None or self._plain:
             return view
         return replace(
             view,
@@ -212,6 +228,13 @@ class StepRenderer:
             room=known.room,
             timestamp=known.timestamp,
         )
+
+    def _picture(self, step: Step) -> NDArray[np.uint8]:
+        """Return what the characters are drawn into: the frame, or a plain room in its place."""
+        if self._room is None:
+            return step.frame.image
+        poses = [state.camera_from_cube for state in (step.state, *(p.state for p in step.players))]
+        return self._room.draw(step.controls.camera_from_table, poses)
 
     def _with_skin(self, drawn: DrawnBody, posed: PosedCharacter) -> SceneCharacter:
         shown = drawn.blood if "blush" in self._realism else 0.0

@@ -121,6 +121,12 @@ def open_session(
         if source is None:
             source = closing.enter_context(open_source(options.source))
         check_start(options, source)
+        if replayed is None and options.source.endswith(".mcap"):
+            replayed = closing.enter_context(SessionFile(Path(options.source)))
+        if replayed is not None and options.stage == "camera":
+            replayed.check_has_video()
+            if is_replay(replayed, options):
+                replayed.check_begins()
         preferences = preferences or PreferenceStore()
         lenses = LensStore(preferences)
         known = calibration or source.intrinsics
@@ -157,15 +163,12 @@ def open_session(
             realism=options.realism,
             inside=options.inside,
             measured=options.appearance,
+            plain=replayed is not None and not replayed.info.has_video,
         )
         closing.callback(playground.close)
         if options.windowed or source.live:  # else nobody waits for a frame
             for each in cast:
                 prepare_gestures(each)
-        if replayed is None and options.source.endswith(".mcap"):
-            replayed = closing.enter_context(SessionFile(Path(options.source)))
-        if replayed is not None and options.stage == "camera" and is_replay(replayed, options):
-            replayed.check_begins()
         replay_inputs = None
         if options.stage != "camera" and replayed is not None:
             replay_inputs = replayed.replay_inputs(options.stage)

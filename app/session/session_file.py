@@ -100,6 +100,14 @@ class SessionFile(MessageFile):
                 f"replay '{first}', or this part as it was recorded with --from pose, or join them"
             )
 
+    def check_has_video(self) -> None:
+        """Refuse to look for a cube in pictures that were not recorded; raises AppError."""
+        if not self.info.has_video:
+            raise AppError(
+                f"'{self.path}' was recorded without video: cubeling replay plays it from where "
+                "the cube was"
+            )
+
     @property
     def cube_edge(self) -> float:
         """Edge of the cube that it was played with [m]; raises AppError or TrackingError."""

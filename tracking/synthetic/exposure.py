@@ -10,6 +10,7 @@ from cubeling.tracking.synthetic.desk import desk_texture, draw_objects, render_
 from cubeling.tracking.synthetic.hand import SyntheticHand, draw_hand, hand_at, hand_region
 from cubeling.tracking.synthetic.options import SyntheticOptions
 from cubeling.tracking.synthetic.paper_cube import TO_LIGHT, PaperCube
+from cubeling.tracking.synthetic.shadow import cast_shadow
 
 MAX_STEP_PX = 0.6
 """Maximum motion of a corner between two samples of one exposure."""
@@ -48,7 +49,7 @@ class ExposureRenderer:
             self._passing_shadow(image, index / options.rate)
             if hand is not None:
                 self._hand_shadow(image, hand)
-            self._cube_shadow(image, middle.table_from_cube)
+            cast_shadow(image, self._camera, self._cube.corners(middle.table_from_cube))
         self._add_cube(image, poses)
         if hand is not None:
             self._add_hand(image, hand, poses[len(poses) // 2])
@@ -98,30 +99,6 @@ class ExposureRenderer:
         soft = cv2.GaussianBlur(dark, (0, 0), 2.0 + 45.0 * max(0.0, height_of_tip))
         shade = cv2.resize(1.0 - 0.34 * soft, self._camera.size)
         image *= in_colours(np.asarray(shade, np.float32))
-
-    def _cube_shadow(self, image: Floats, table_from_cube: Array) -> None:
-        corners = self._cube.corners(table_from_cube)
-        height = max(0.0, float(corners[:, 1].min()))
-        away = -TO_LIGHT[[0, 2]] / TO_LIGHT[1]
-        foot = corners * (1.0, 0.0, 1.0)
-        cast = foot.copy()
-        cast[:, [0, 2]] += 0.55 * np.maximum(corners[:, 1:2], 0.0) * away
-        soft = 5.0 + 260.0 * height
-        self._darken(image, cast, 0.40 / (1.0 + 9.0 * height), soft)
-        self._darken(image, foot, 0.42 / (1.0 + 60.0 * height), 2.5 + 120.0 * height)
-
-    def _darken(self, image: Floats, points: Array, depth: float, soft: float) -> None:
-        in_camera = self._camera.from_table(points)
-        if (in_camera[:, 2] < 0.05).any():
-            return
-        pixels = self._camera.pixels(in_camera)
-        region = self._camera.region_around(pixels, 3.2 * soft)
-        if region.empty:
-            return
-        hull = cv2.convexHull(np.round((pixels - (region.x, region.y)) * 16).astype(np.int32))
-        mask = np.zeros((region.height, region.width), np.float32)
-        cv2.fillConvexPoly(mask, hull, 1.0, cv2.LINE_AA, 4)
-        image[region.index] *= (1.0 - depth * cv2.GaussianBlur(mask, (0, 0), soft))[..., None]
 
     def _passing_shadow(self, image: Floats, time: float) -> None:
         """Move a wide soft shadow, as of a person, along the near edge."""

@@ -37,7 +37,8 @@ class PaperCube:
 
     def __init__(self, cube: CubeModel, camera: CameraRays, seed: int) -> None:
         self.cube = cube
-        self._camera = camera
+        self.camera = camera
+        """What it is seen through; it may be exchanged."""
         self._fold_poses = face_poses(cube)
         self._textures = face_textures(cube, seed)
 
@@ -52,14 +53,14 @@ class PaperCube:
         corners = self.corners(camera_from_cube)
         if (corners[:, 2] < 0.02).any():
             return PixelRegion(0, 0, 0, 0)
-        pixels, margin = self._camera.pixels(corners), 4.0
+        pixels, margin = self.camera.pixels(corners), 4.0
         if self._fold_poses:  # a face may stand out by some millimetres
             margin += 0.1 * float(np.ptp(pixels, axis=0).max())
-        return self._camera.region_around(pixels, margin)
+        return self.camera.region_around(pixels, margin)
 
     def depth(self, region: PixelRegion, camera_from_cube: Array) -> Floats:
         """Return the depth of the cube's surface, (h, w) [m]; infinite where there is no cube."""
-        x, y = cv2.split(self._camera.rays(region, 1))
+        x, y = cv2.split(self.camera.rays(region, 1))
         enters = np.zeros(x.shape, np.float32)
         leaves = np.full(x.shape, np.inf, np.float32)
         for axis in range(3):
@@ -85,7 +86,7 @@ class PaperCube:
         -------
         Colour (h, w, 3) BGR, premultiplied; and coverage (h, w, 1), 0…1.
         """
-        rays = self._camera.rays(region, samples)
+        rays = self.camera.rays(region, samples)
         sums = np.zeros((region.height, region.width, 4), np.float32)
         for pose in poses:
             sums += average_blocks(self._sample(region, rays, pose, to_light, samples), samples)
@@ -117,9 +118,9 @@ class PaperCube:
         corners = centre + self.cube.edge / 2 * (_FACE_CORNERS @ axes[:, :2].T)
         if corners[:, 2].min() < MIN_DEPTH:
             return np.s_[:, :]
-        pixels = self._camera.pixels(corners)
+        pixels = self.camera.pixels(corners)
         margin = 2.0 + BEND_SHARE * float(np.ptp(pixels, axis=0).max())
-        around = self._camera.region_around(pixels, margin)
+        around = self.camera.region_around(pixels, margin)
         top, left = max(around.y - region.y, 0), max(around.x - region.x, 0)
         bottom, right = max(around.bottom - region.y, 0), max(around.right - region.x, 0)
         return np.s_[samples * top : samples * bottom, samples * left : samples * right]
@@ -129,7 +130,7 @@ class PaperCube:
 
         A finer level would be undersampled, and its edges would alias.
         """
-        focal = self._camera.intrinsics.matrix[0, 0] * samples
+        focal = self.camera.intrinsics.matrix[0, 0] * samples
         along_edge = focal * self.cube.edge / float(np.linalg.norm(centre))
         level = int(np.clip(np.ceil(np.log2(FACE_TEXELS / along_edge)), 0, MIPMAP_LEVELS - 1))
         return self._textures[name][level]

@@ -128,7 +128,7 @@ def replay(
     Example: cubeling replay recordings/companion.mcap --output companion.mp4
     """
     from cubeling.app.running.option_checks import check_inputs, check_output_paths, check_part
-    from cubeling.app.session import SessionOptions, check_stage, open_session_file
+    from cubeling.app.session import NO_VIDEO, SessionOptions, check_stage, open_session_file
 
     with ExitStack() as closing:
         opened = closing.enter_context(open_session_file(session))
@@ -180,6 +180,7 @@ def replay(
             if check:
                 raise AppError(f"'{session}' was recorded without video: nothing can be checked")
             stage = "state" if stage == "camera" else stage
+            record_codec = NO_VIDEO  # what is recorded of it has none either
         options = replace(
             recorded,
             scenario=scenario or recorded.scenario,
