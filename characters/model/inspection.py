@@ -199,11 +199,18 @@ def _is_head(character: Character) -> bool:
 
 def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iterator[str]:
     if character.lender is not None:
-        none = "none of its motions stands" if clips else "it has no motions of its own"
-        yield (
-            f"{none.capitalize()}: {'beside them ' if clips else ''}it plays those of the bundled "
-            f"{character.lender}, retargeted; --own-motions-only leaves them out."
-        )
+        lent = f"those of the bundled {character.lender}, retargeted"
+        if clips:
+            yield (
+                "None of its motions is one of standing still, in which it could rest: beside them "
+                f"it plays {lent}. A clip of its own with the name Idle, or --own-motions-only of "
+                "cubeling play, leaves them out."
+            )
+        else:
+            yield (
+                f"It has no motions of its own: it plays {lent}; --own-motions-only of cubeling "
+                "play leaves them out."
+            )
     elif not clips and _is_head(character):
         yield "It is a head: it speaks, looks around and shows moods, and does not walk."
     elif not clips:

@@ -33,24 +33,25 @@ def diff(
         figure_differences,
     )
     from cubeling.app.workshop.inspecting.figures import read_figures
-    from cubeling.app.workshop.inspecting.summary import document_of
 
-    documents = []
+    figures = []
     for path in (first, second):
         with complete_session(path, salvage=salvage) as complete:
-            documents.append(document_of(read_figures(path, complete, salvage=salvage)))
+            figures.append(read_figures(path, complete, salvage=salvage))
     found = [
-        *figure_differences(*documents),
+        *figure_differences(*figures),
         *channel_differences(first, second, salvage=salvage),
     ]
     console = Console(highlight=False)
     if not found:
         console.print(Text(f"{first.name} and {second.name} hold the same"), soft_wrap=True)
         return
+    for word, path in (("first", first), ("second", second)):
+        console.print(Text.assemble((f"{word:<6}", "bold"), f"  {path}"), soft_wrap=True)
     table = Table(box=SIMPLE_HEAD)
-    table.add_column(no_wrap=True)
-    for name in (first.name, second.name):
-        table.add_column(Text(name), overflow="fold")
+    table.add_column(overflow="fold", max_width=24)
+    for word in ("first", "second"):
+        table.add_column(word, overflow="fold", ratio=1)
     for each in found:
         table.add_row(Text(each.what), Text(each.first), Text(each.second))
     console.print(table)

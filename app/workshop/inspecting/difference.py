@@ -1,6 +1,7 @@
 """What differs between two sessions: what was played, their figures, and their channels."""
 
-from collections.abc import Iterator
+import json
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
@@ -8,14 +9,24 @@ from typing import Any
 
 from cubeling.app.session import SessionFile
 from cubeling.app.session.encoding import upgrade
+from cubeling.app.workshop.inspecting.figures import SessionFigures
+from cubeling.app.workshop.inspecting.summary import lines_of
 
-UNCOMPARED_KEYS = ("session", "bytes", "channels")
-"""Keys of the figures that differ between any two files, or are compared by themselves."""
+NAMED_LINES = ("session",)
+"""Lines of a summary that differ between any two files."""
 
-MAX_SHOWN_ENTRIES = 12
-"""A list with more entries is one value, of which their number is shown."""
+PLAYED_WORDS = {
+    "others": "others of the cast",
+    "character_sha256": "files of the characters",
+    "turns": "turns to the greatest intensity",
+    "cube_folded": "cube as folded",
+    "driver": "robot's protocol",
+    "seeds": "seeds of chance",
+    "version": "version of Cubeling",
+}
+"""The keys of what was played in words, where they are none."""
 
-MAX_SHOWN_CHARS = 48
+MAX_SHOWN_CHARS = 240
 """Longest value that is shown whole."""
 
 
@@ -31,12 +42,15 @@ class Difference:
     """What it is in each."""
 
 
-def figure_differences(first: dict[str, Any], second: dict[str, Any]) -> Iterator[Difference]:
-    """Yield which figures differ, by `document_of` of both sessions."""
-    one, other = _flat(first), _flat(second)
-    for key in dict.fromkeys((*one, *other)):
-        if one.get(key) != other.get(key):
-            yield Difference(key, _shown(one.get(key)), _shown(other.get(key)))
+def figure_differences(first: SessionFigures, second: SessionFigures) -> Iterator[Difference]:
+    """Yield which lines of their summaries differ, and what else was played differently."""
+    summaries = [dict(lines_of(each)) for each in (first, second)]
+    yield from _differences(*summaries, leave_out=NAMED_LINES)
+    played = [{PLAYED_WORDS.get(k, k): v for k, v in each.played.items()} for each in (first, second)]
+    # The summaries have said these.
+    yield from _differences(*played, leave_out=("scenario", "character", "personality"))
+    begun = [{"begun (UTC)": each.info.clock_zero} for each in (first, second)]
+    yield from _differences(*begun)
 
 
 def channel_differences(
@@ -56,15 +70,14 @@ def channel_differences(
                 time = (mine or theirs)[1]
                 start = time if start is None else start
                 if mine is None or theirs is None:
-                    ended = "ends", "goes on"
-                    yield Difference(
-                        f"{topic} from {time - start:.3f} s",
-                        ended[mine is not None],
-                        ended[theirs is not None],
-                    )
+                    ended = f"ends before {time - start:.3f} s", "goes on"
+                    yield Difference(topic, ended[mine is not None], ended[theirs is not None])
                     break
-                if upgrade(topic, mine[2]) != upgrade(topic, theirs[2]):
-                    yield Difference(f"{topic} from {time - start:.3f} s", "differs", "differs")
+                data = upgrade(topic, mine[2]), upgrade(topic, theirs[2])
+                if data[0] != data[1]:
+                    shown = _first_difference(*data)
+                    at = f"at {time - start:.3f} s"
+                    yield Difference(topic, *(f"{at}: {each}" for each in shown))
                     break
 
 
@@ -72,24 +85,45 @@ def _topics(session: SessionFile) -> set[str]:
     return {topic for topic, _, _ in session.messages()}
 
 
-def _flat(document: dict[str, Any], before: str = "") -> dict[str, Any]:
-    """Return nested tables and short lists as one, "tracking.found_share", "states[1].what"."""
-    flat: dict[str, Any] = {}
-    for key, value in document.items():
-        if not before and key in UNCOMPARED_KEYS:
-            continue
-        name = f"{before}{key}"
-        if isinstance(value, list) and len(value) <= MAX_SHOWN_ENTRIES:
-            parts = {f"{name}[{place}]": each for place, each in enumerate(value)}
-        else:
-            parts = {name: value}
-        for part, each in parts.items():
-            flat |= _flat(each, f"{part}.") if isinstance(each, dict) else {part: each}
-    return flat
+def _differences(
+    first: Mapping[str, str], second: Mapping[str, str], leave_out: tuple[str, ...] = ()
+) -> Iterator[Difference]:
+    for word in dict.fromkeys((*first, *second)):
+        one, other = first.get(word, ""), second.get(word, "")
+        if one != other and word not in leave_out:
+            is_json = one[:1] in ("{", "[") and other[:1] in ("{", "[")
+            parts = _first_difference(one, other) if is_json else (_shown(one), _shown(other))
+            yield Difference(word, *parts)
+
+
+def _first_difference(first: str | bytes, second: str | bytes) -> tuple[str, str]:
+    """Return what two documents say differently first: "visible: no", or how long they are."""
+    try:
+        one, other = _leaves(json.loads(first)), _leaves(json.loads(second))
+    except ValueError:
+        return f"{len(first):,} bytes", f"{len(second):,} other bytes"
+    for key in dict.fromkeys((*one, *other)):
+        if one.get(key) != other.get(key):
+            return f"{key}: {_shown(one.get(key))}", f"{key}: {_shown(other.get(key))}"
+    return "written in one way", "written in another way"
+
+
+def _leaves(value: Any, before: str = "") -> dict[str, Any]:
+    """Return the values in nested tables and lists by the words that lead to them."""
+    if isinstance(value, dict):
+        parts = list(value.items())
+    elif isinstance(value, list):
+        parts = [(str(place), each) for place, each in enumerate(value, 1)]
+    else:
+        return {before or "value": value}
+    found: dict[str, Any] = {}
+    for key, each in parts:
+        found |= _leaves(each, f"{before} {key}".strip().replace("_", " "))
+    return found
 
 
 def _shown(value: Any) -> str:
-    if isinstance(value, list):
-        return f"{len(value)} entries"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     text = "–" if value in (None, "") else " ".join(str(value).split())
     return text if len(text) <= MAX_SHOWN_CHARS else f"{text[:MAX_SHOWN_CHARS]}…"

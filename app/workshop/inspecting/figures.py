@@ -2,7 +2,7 @@
 
 import json
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cubeling.app.errors import AppError
 from cubeling.app.pipeline.scenario import EmotionTarget
+from cubeling.app.scenarios import find_scenario
 from cubeling.app.session import Mark, SessionFile, SessionInfo, WizardAct
 from cubeling.app.session.encoding import IMAGE_TOPIC
 from cubeling.app.workshop.moods import read_robot_traces
@@ -44,8 +46,8 @@ class ChannelFigures:
 
     topic: str
     messages: int
-    size: int
-    """All its messages together [bytes], before they are compressed."""
+    unpacked_size: int
+    """All its messages together [bytes]; those of several channels are compressed as one."""
 
     rate: float
     """Messages a second of the session."""
@@ -81,6 +83,10 @@ class SessionFigures:
 
     name: str
     info: SessionInfo
+    played: Mapping[str, str]
+    """What was played, resolved, as in `info`; what it does not say is as it was computed now, or
+    as the scenario has it."""
+
     size: int
     """Size of its file [bytes]."""
 
@@ -166,6 +172,7 @@ def read_figures(path: Path, complete: Path, *, salvage: bool = False) -> Sessio
         channels = tuple(_channels(session))
     first = float(frames[0]) if len(frames) else 0.0
     with SessionFile(complete, salvage=salvage) as session:
+        computed = session.info.played
         states = _read(session, "/cube/state", CubeState)
         posed = _read(session, "/character/pose", PosedCharacter)
         felt = _read(session, "/robot/emotion", EmotionTarget)
@@ -175,6 +182,7 @@ def read_figures(path: Path, complete: Path, *, salvage: bool = False) -> Sessio
     return SessionFigures(
         name=path.name,
         info=info,
+        played={**_own_of(info.options.scenario), **_asked(info), **(info.played or computed)},
         size=path.stat().st_size,
         channels=channels,
         intervals=np.diff(frames),
@@ -217,6 +225,22 @@ def spells(changes: list[tuple[float, str]]) -> tuple[Spell, ...]:
         Spell(round(time, 3), round(end - time, 3), what)
         for (time, what), end in zip(found, ends, strict=True)
     )
+
+
+def _own_of(scenario: str) -> dict[str, str]:
+    """Return the character and personality of a scenario; nothing of one that is not here."""
+    try:
+        found = find_scenario(scenario)
+    except AppError:
+        return {}
+    return {"character": found.character, "personality": found.personality}
+
+
+def _asked(info: SessionInfo) -> dict[str, str]:
+    """Return what was asked for instead, which older sessions say."""
+    options = info.options
+    asked = {"character": options.character, "personality": options.personality}
+    return {name: text for name, text in asked.items() if text}
 
 
 def _read(session: SessionFile, topic: str, kind: type[Any]) -> list[tuple[float, Any]]:

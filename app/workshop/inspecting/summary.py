@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 
 from cubeling.app.counted import quantity
+from cubeling.app.ui.panels.tracking import REFUSALS, SOURCES
 from cubeling.app.workshop.inspecting.figures import SessionFigures, Spell
 from cubeling.app.workshop.pages.line_plot import line_plot
 from cubeling.app.workshop.pages.page import heading, page, pictures, table
@@ -19,6 +20,9 @@ from cubeling.tracking import Frame, open_source
 THUMBNAILS, THUMBNAIL_WIDTH_PX = 8, 320
 """Pictures of a page, and their width [px]."""
 
+RESOLVED = ("character", "personality")
+"""What is said of who played, of the keys of `SessionFigures.played`."""
+
 MAX_LISTED = 8
 """Gaps, verdicts and the like that are named one by one."""
 
@@ -27,24 +31,20 @@ def lines_of(figures: SessionFigures) -> list[tuple[str, str]]:
     """Return what there is to say about a session: a word, and a line."""
     info, link = figures.info, figures.link
     labels = ", ".join(filter(None, (info.labels.participant, info.labels.condition)))
-    played = info.played
-    character = played.get("character") or info.options.character or "the scenario's own"
-    personality = played.get("personality") or info.options.personality or "the scenario's own"
+    who = [f"{key} {figures.played[key]}" for key in RESOLVED if figures.played.get(key)]
     rows = [
-        ("session", f"{figures.name}, {figures.size / 1e6:.1f} MB"),
-        ("played", f"{info.options.scenario}, character {character}, personality {personality}"),
+        ("session", f"{figures.name}, {_size_line(figures)}"),
+        ("played", ", ".join([info.options.scenario, *who])),
+        ("video", "" if info.has_video else "none: all was recorded but the camera's pictures"),
         ("by", labels),
         ("notes", info.labels.notes),
         ("duration", f"{info.duration:.1f} s, {quantity(info.frames, 'frame')}{_rate(figures)}"),
         ("gaps", _listed(figures.gaps)),
-        ("cube found", "" if not len(figures.visible) else f"in {percent(figures.found_share)}"),
+        ("cube found", _found_line(figures)),
         ("cube lost", _listed(figures.lost)),
-        ("verdicts", _counts(figures.verdicts)),
-        ("measured on", _counts(figures.measured_on)),
-        (
-            "error",
-            _error_line(figures),
-        ),
+        ("found by", _frames(figures.measured_on, SOURCES)),
+        ("not found", _frames(figures.verdicts, {"unseen": "it was not in view", **REFUSALS})),
+        ("error", _error_line(figures)),
         ("character", _durations(figures, figures.states)),
         ("emotion", _durations(figures, figures.labels)),
         ("link", _link_line(figures)),
@@ -54,6 +54,17 @@ def lines_of(figures: SessionFigures) -> list[tuple[str, str]]:
         ("marks", ", ".join(f"{m.at_s:.1f} s {m.kind} {m.name}".strip() for m in figures.marks)),
     ]
     return [(word, line) for word, line in rows if line]
+
+
+def _size_line(figures: SessionFigures) -> str:
+    """Return how large the file is, and what it holds."""
+    unpacked = sum(each.unpacked_size for each in figures.channels)
+    size, content = f"{figures.size / 1e6:.1f} MB", f"{unpacked / 1e6:.1f} MB"
+    return size if size == content else f"{size} on the disk, {content} unpacked"
+
+
+def _found_line(figures: SessionFigures) -> str:
+    return f"in {percent(figures.found_share)} of the frames" if len(figures.visible) else ""
 
 
 def _wizard_line(figures: SessionFigures) -> str:
@@ -74,8 +85,9 @@ def document_of(figures: SessionFigures) -> dict[str, Any]:
     return {
         "session": figures.name,
         "bytes": figures.size,
+        "video": info.has_video,
         "scenario": info.options.scenario,
-        "played": dict(info.played),
+        "played": dict(figures.played),
         "participant": info.labels.participant,
         "condition": info.labels.condition,
         "notes": info.labels.notes,
@@ -118,7 +130,7 @@ def document_of(figures: SessionFigures) -> dict[str, Any]:
         "channels": {
             each.topic: {
                 "messages": each.messages,
-                "bytes": each.size,
+                "unpacked_bytes": each.unpacked_size,
                 "rate_hz": _number(each.rate),
             }
             for each in figures.channels
@@ -156,16 +168,15 @@ def _parts(figures: SessionFigures, session: Path) -> Iterator[str]:
         yield line_plot([("", times[1:], between)], "time between frames [ms]", limits, lost)
     if figures.info.played:
         yield heading("What was played")
-        shown = tuple(
-            (name, text) for name, text in figures.info.played.items() if 0 < len(text) < 200
-        )
+        shown = tuple((name, text) for name, text in figures.played.items() if 0 < len(text) < 200)
         yield table(ReportTable("Resolved", ("", ""), shown), words=True)
     yield heading("Channels")
     rows = tuple(
-        (c.topic, f"{c.messages}", f"{c.size / 1e6:.2f}", figure(c.rate, 1))
+        (c.topic, f"{c.messages}", f"{c.unpacked_size / 1e6:.2f}", figure(c.rate, 1))
         for c in figures.channels
     )
-    yield table(ReportTable("What the file holds", ("topic", "messages", "MB", "Hz"), rows))
+    head = "topic", "messages", "MB unpacked", "Hz"
+    yield table(ReportTable(f"What the file holds: {_size_line(figures)}", head, rows))
 
 
 def _thumbnails(figures: SessionFigures, session: Path) -> Iterator[tuple[bytes, str]]:
@@ -188,7 +199,7 @@ def _rate(figures: SessionFigures) -> str:
         return ""
     median, longest = np.median(figures.intervals), figures.intervals.max()
     rate = 1.0 / figures.intervals.mean()
-    return f", {rate:.1f} a second ({1000 * median:.1f} ms apart, {1000 * longest:.0f} ms at most)"
+    return f", {rate:.1f} a second ({1000 * median:.1f} ms apart, {1000 * longest:.1f} ms at most)"
 
 
 def _listed(found: tuple[Spell, ...]) -> str:
@@ -202,6 +213,12 @@ def _listed(found: tuple[Spell, ...]) -> str:
 
 def _counts(found: tuple[tuple[str, int], ...]) -> str:
     return ", ".join(f"{word or 'nothing'} {count}" for word, count in found[:MAX_LISTED])
+
+
+def _frames(found: tuple[tuple[str, int], ...], words: dict[str, str]) -> str:
+    """Return how many frames there are of what is in `words`: "markers in 748 frames, …"."""
+    named = [(words[key], quantity(count, "frame")) for key, count in found if key in words]
+    return ", ".join(f"{word} in {frames}" for word, frames in named[:MAX_LISTED])
 
 
 def _durations(figures: SessionFigures, found: tuple[Spell, ...]) -> str:

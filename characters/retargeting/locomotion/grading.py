@@ -121,13 +121,13 @@ class GaitReport:
                 "sinking",
                 self.sinking * size > MAX_SINKING_CM,
                 f"its feet sink {self.sinking * size:.1f} cm into the ground; "
-                "look at its soles with cubeling character inspect",
+                "look at its soles: cubeling character inspect -o FOLDER draws them",
             ),
             (
                 "knees",
                 knees > MAX_KNEE_EXCESS_DEG,
                 f"its knees bend {knees:.0f}° more than the recording's; "
-                "check its legs with cubeling character inspect",
+                "check its legs: cubeling character inspect -o FOLDER draws them",
             ),
             (
                 "bones",

@@ -84,6 +84,7 @@ def test_long_names_of_clips_are_shown_whole(cubeling, monkeypatch):
     replace(human, clips={name: clip}).save(Path("named.glb"))
     code, out, _ = cubeling("character", "inspect", "named.glb")
     assert code == 0
+    assert [path.name for path in Path().iterdir()] == ["named.glb"]  # nothing else was asked for
     table = out[out.index("Clips") : out.index("None of its motions")].splitlines()
     heading = next(line for line in table if "seconds" in line)
     assert "speed [m/s]" in " ".join(table)
@@ -97,6 +98,8 @@ def test_a_motion_without_a_body_is_drawn_as_sticks(cubeling):
     assert (code, err) == (0, "")
     assert "0.20" in out
     assert "once" in out
+    assert not Path("nod-pictures").exists()
+    assert cubeling("character", "inspect", "nod.bvh", "--clips")[0] == 0
     assert {path.name for path in Path("nod-pictures").iterdir()} == {"turntable.png", "clips.png"}
 
 
@@ -140,7 +143,7 @@ def test_a_file_in_place_of_the_output_folder_is_refused(cubeling):
 
 def test_names_that_look_like_markup_are_printed_literally(cubeling, tmp_path):
     Path("[b]old[.bvh").write_text(BVH.replace("Spine", "[red]Spine"))
-    code, out, _ = cubeling("character", "inspect", "[b]old[.bvh")
+    code, out, _ = cubeling("character", "inspect", "[b]old[.bvh", "--clips")
     assert code == 0
     assert "[red]Spine" in out
     assert out.startswith("[b]old[, ")

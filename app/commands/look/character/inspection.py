@@ -40,9 +40,12 @@ def inspect_command(
     ],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Folder for the pictures; default: NAME-pictures."),
+        typer.Option("--output", "-o", help="Draw it from all sides, into this folder."),
     ] = None,
-    clips: Annotated[bool, typer.Option("--clips", help="Draw frames of every clip too.")] = False,
+    clips: Annotated[
+        bool,
+        typer.Option("--clips", help="Draw frames of every clip too; without -o to NAME-pictures."),
+    ] = False,
     skeleton: Annotated[
         Path | None, typer.Option(help="The .asf of an .amc, if it is in another folder.")
     ] = None,
@@ -58,7 +61,7 @@ def inspect_command(
         typer.Option(help="Vertical axis of a motion (y, z, -y …), if it is recognised wrongly."),
     ] = None,
 ) -> None:
-    """Show the skeleton, size, clips and problems of a character, and draw it from all sides.
+    """Show the skeleton, size, clips and problems of a character; with -o draw it from all sides.
 
     The skeleton shows the recognised body part of each joint. A motion without a body is drawn as
     a stick figure: left is blue, right is red.
@@ -66,8 +69,8 @@ def inspect_command(
     Example: cubeling character inspect human --clips -o human-pictures
     """
     console = Console()
-    folder = output or Path(f"{Path(character).stem}-pictures")
-    if folder.exists() and not folder.is_dir():
+    folder = output or (Path(f"{Path(character).stem}-pictures") if clips else None)
+    if folder is not None and folder.exists() and not folder.is_dir():
         raise AppError(f"{folder} is a file: choose another folder with --output")
     from cubeling.characters import load_motion
 
@@ -75,6 +78,8 @@ def inspect_command(
     with _progress(f"Reading {Path(character).name}"):
         inspection, has_body = _load(character, read_motion)
     _print(console, inspection)
+    if folder is None:
+        return
     for path in _draw(inspection.character, folder, clips or not has_body):
         console.print(f"Written: [bold]{escape(str(path))}[/]", soft_wrap=True)
 

@@ -10,7 +10,6 @@ import pytest
 
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.session import Recorder, frame_encoder
-from cubeling.app.workshop.inspecting.difference import figure_differences
 from cubeling.app.workshop.inspecting.figures import read_figures, spells
 from cubeling.app.workshop.inspecting.summary import document_of, lines_of
 from cubeling.app.workshop.pages.line_plot import line_plot
@@ -58,7 +57,8 @@ def test_figures_are_those_of_what_was_recorded(session):
     assert document["events"] == {"placed top": 1}
     words = dict(lines_of(figures))
     assert words["gaps"] == "1 time, 0.6 s in all: 0.55 s at 0.5 s"
-    assert words["cube found"] == "in 50.0 %"
+    assert words["cube found"] == "in 50.0 % of the frames"
+    assert words["not found"] == "it was not in view in 10 frames"
     assert "link" not in words  # there was no robot
 
 
@@ -86,11 +86,27 @@ def test_a_difference_is_found_on_its_channel(cubeling, tmp_path, session):
     code, out, _ = cubeling("diff", session, other)
     assert code == 1
     rows = [" ".join(line.split()) for line in out.splitlines()]
-    assert "frames 20 19" in rows
-    assert "participant – P02" in rows
-    assert "/cube/controls from 1.450 s goes on ends" in rows
+    assert any(re.match(r"duration 1\.[45] s, 20 .* 1\.4 s, 19", row) for row in rows)
+    assert "by – P02" in rows
+    assert "/cube/controls goes on ends before 1.450 s" in rows
     # The cube is found a frame earlier.
-    assert "/cube/state from 0.450 s differs differs" in rows
+    assert "/cube/state at 0.450 s: visible: no at 0.450 s: visible: yes" in rows
+
+
+def test_a_difference_fits_a_screen_and_names_long_files_whole(
+    cubeling, tmp_path, session, monkeypatch
+):
+    monkeypatch.setenv("COLUMNS", "80")
+    name = "participant-07-in-the-second-condition-on-a-rainy-monday-morning-after-the-break.mcap"
+    other = recorded(tmp_path / name, TIMES[1:], scenario="companion", personality="calm")
+    code, out, _ = cubeling("diff", session, other)
+    assert code == 1
+    lines = out.splitlines()
+    assert any(line.endswith(name) for line in lines)
+    assert max(len(line) for line in lines[2:]) <= 80
+    assert "[" not in out.replace(str(tmp_path), "")  # a path within a document is no word
+    assert "played" in out
+    assert "calm" in out
 
 
 @pytest.mark.parametrize("command", some(["inspect", "diff", "label"]))
@@ -149,10 +165,26 @@ def test_a_long_curve_keeps_its_peaks():
     assert drawn.count("M") >= 2  # it is broken where nothing is known
 
 
-def test_what_differs_in_a_short_list_is_named():
-    one = {"states": [{"what": "idle", "seconds": 1.0}], "mean": [0.1, 0.2]}
-    other = {"states": [{"what": "kiss", "seconds": 1.0}], "mean": [0.1, 0.3]}
-    found = [(each.what, each.first, each.second) for each in figure_differences(one, other)]
-    assert found == [("states[0].what", "idle", "kiss"), ("mean[1]", "0.2", "0.3")]
-    many = {"gaps": list(range(100))}
-    assert [each.first for each in figure_differences(many, {"gaps": []})] == ["100 entries"]
+def test_what_was_played_is_said_although_the_file_says_only_what_came_in(session):
+    figures = read_figures(session, session)
+    words = dict(lines_of(figures))
+    assert words["played"] == "companion, character vleo, personality thesis"
+    assert document_of(figures)["played"]["character"] == "vleo"
+
+
+def test_a_session_without_video_says_so(cubeling, tmp_path, session):
+    blind = recorded(tmp_path / "blind.mcap", TIMES, video="no")
+    code, out, _ = cubeling("inspect", blind, "-o", "blind.html")
+    assert code == 0
+    assert re.search(r"video +none", out)
+    assert "<td>video</td><td>none" in re.sub(r"\s+class=\S+", "", Path("blind.html").read_text())
+    assert json.loads(cubeling("inspect", blind, "--json")[1])["video"] is False
+    _, out, _ = cubeling("diff", session, blind)
+    assert re.search(r"video +– +none", out)
+
+
+def test_sizes_are_those_of_the_disk_and_unpacked(session):
+    figures = read_figures(session, session)
+    unpacked = sum(each.unpacked_size for each in figures.channels)
+    assert figures.size == session.stat().st_size
+    assert unpacked > figures.size  # it is compressed
