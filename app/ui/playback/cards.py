@@ -1,6 +1,6 @@
 """Cards that the player asks for, and those that a session shows for a while."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 from cubeling.app.pipeline.step import Rect
@@ -20,14 +20,50 @@ PILLS_TOP, PILL_GAP = 78.0, 8.0
 """Where small cards lie, below the hint, and the distance between them."""
 
 COLUMNS = (("Play", "Recordings"), ("Keep", "View"))
-"""The headings of the card of keys, by column."""
+"""The headings of the card of keys, by column; in a narrow picture they are one column."""
 
 ROW_HEIGHT, HEADING_HEIGHT = 31.0, 44.0
+WORDS_SIZE, WORDS_ROOM, WORDS_LINE = 17.0, 300.0, 20.0
+"""Size of what a key does, its width, and the height of each further line."""
+
 CAP_SIZE = 17.0
 ARROWS = {"←": -1, "→": 1}
 """Keys that the font cannot write, by their direction."""
 
-KEYS_WIDTH, KEYS_TOP, KEYS_LEFT = 880.0, 26.0, (32.0, 508.0)
+KEYS_TOP, KEYS_BOTTOM, KEYS_SIDE, COLUMN_GAP = 26.0, 44.0, 32.0, 28.0
+WORDS_GAP = 16.0
+"""Between the keys of a column and what they do."""
+
+HINTED_WIDER = 1.04
+"""Small letters are hinted: lines of them are up to so much wider than `text_width` says."""
+
+EDGE = 10.0
+"""Least distance of a large card from the edges of the picture."""
+
+
+def centre(size: tuple[float, float], width: float) -> tuple[float, float, float]:
+    """Return left and top edge of a large card in the middle of a picture, and its scale.
+
+    A card that does not fit is drawn smaller.
+
+    >>> centre((880.0, 500.0), 1280.0)
+    (200.0, 110.0, 1.0)
+    >>> centre((880.0, 500.0), 460.0)
+    (10.0, 235.0, 0.5)
+    """
+    wide, high = size
+    scale = min(1.0, (width - 2 * EDGE) / wide, (PICTURE_HEIGHT - 2 * EDGE) / high)
+    return (width - scale * wide) / 2, (PICTURE_HEIGHT - scale * high) / 2, scale
+
+
+def large_card(
+    size: tuple[float, float], width: float, scale: float, draw: Callable[[Canvas], None]
+) -> Card:
+    """Return a card in the middle of the picture; `draw` draws it as if it had the room."""
+    left, top, smaller = centre(size, width)
+    canvas = Canvas(*size, scale * smaller)
+    draw(canvas)
+    return canvas.card(left / smaller, top / smaller, 0.97)
 
 
 def draw_pills(
@@ -85,34 +121,62 @@ def draw_keys(width: float, scale: float) -> Card:
     columns = [
         [row for group in groups for row in rows if row.group == group] for groups in COLUMNS
     ]
-    height = KEYS_TOP + max(map(_column_height, columns)) + 44
-    canvas = Canvas(KEYS_WIDTH, height, scale)
-    for left, column in zip(KEYS_LEFT, columns, strict=True):
-        _key_column(canvas, left, column)
-    words = "Esc closes this card"
-    canvas.text(KEYS_WIDTH / 2, height - 20, words, 16, QUIET, "middle")
-    return canvas.card((width - KEYS_WIDTH) / 2, (PICTURE_HEIGHT - height) / 2, 0.97)
+    one_column = [row for column in columns for row in column]
+    shapes = (columns, [one_column])
+    chosen = max(shapes, key=lambda each: centre(_keys_size(each), width)[2])
+    size = _keys_size(chosen)
+
+    def draw(canvas: Canvas) -> None:
+        left = KEYS_SIDE
+        for column in chosen:
+            _key_column(canvas, left, column)
+            left += _column_size(column)[0] + COLUMN_GAP
+        words = "Esc closes this card"
+        canvas.text(size[0] / 2, size[1] - 20, words, 16, QUIET, "middle")
+
+    return large_card(size, width, scale, draw)
 
 
-def _column_height(rows: list[KeyHelp]) -> float:
-    return len({row.group for row in rows}) * HEADING_HEIGHT + len(rows) * ROW_HEIGHT
+def _keys_size(columns: Sequence[list[KeyHelp]]) -> tuple[float, float]:
+    wide, high = zip(*map(_column_size, columns), strict=True)
+    gaps = (len(columns) - 1) * COLUMN_GAP
+    return 2 * KEYS_SIDE + sum(wide) + gaps, KEYS_TOP + max(high) + KEYS_BOTTOM
+
+
+def _column_size(rows: list[KeyHelp]) -> tuple[float, float]:
+    lines = [wrap_text(row.help, WORDS_ROOM, WORDS_SIZE) for row in rows]
+    longest = max(text_width(line, WORDS_SIZE) for each in lines for line in each)
+    high = len({row.group for row in rows}) * HEADING_HEIGHT + len(rows) * ROW_HEIGHT
+    return _caps_width(rows) + longest * HINTED_WIDER, high + sum(
+        len(each) - 1 for each in lines
+    ) * WORDS_LINE
+
+
+def _caps(row: KeyHelp) -> list[str]:
+    """Return what is drawn as keys: "Shift", "←" and "→" for "Shift ←" and "Shift →"."""
+    return list(dict.fromkeys(" ".join(row.keys).split()))
+
+
+def _caps_width(rows: list[KeyHelp]) -> float:
+    return max(sum(map(_key_width, _caps(row))) for row in rows) + WORDS_GAP
 
 
 def _key_column(canvas: Canvas, left: float, rows: list[KeyHelp]) -> None:
     y, group = KEYS_TOP, ""
-    caps = [list(dict.fromkeys(" ".join(row.keys).split())) for row in rows]
-    words_left = left + max(sum(map(_key_width, each)) for each in caps) + 16
-    for row, keys in zip(rows, caps, strict=True):
+    words_left = left + _caps_width(rows)
+    for row in rows:
         if row.group != group:
             group = row.group
             canvas.text(left, y + 24, group, 22, INK)
             y += HEADING_HEIGHT
         x = left
-        for key in keys:
+        for key in _caps(row):
             _draw_key(canvas, x, y + ROW_HEIGHT / 2 - 6, key)
             x += _key_width(key)
-        canvas.text(words_left, y + 15, row.help, 17, INK)
-        y += ROW_HEIGHT
+        lines = wrap_text(row.help, WORDS_ROOM, WORDS_SIZE)
+        for number, line in enumerate(lines):
+            canvas.text(words_left, y + 15 + number * WORDS_LINE, line, WORDS_SIZE, INK)
+        y += ROW_HEIGHT + (len(lines) - 1) * WORDS_LINE
 
 
 def _key_width(key: str) -> float:
@@ -143,16 +207,21 @@ def _arrow(canvas: Canvas, x: float, y: float, side: int) -> None:
 @lru_cache(maxsize=4)
 def draw_ending(ending: EndCard, keys: str, width: float, scale: float) -> Card:
     """Return the card at the end of a recording; `keys` says what closes it, or is empty."""
-    words = [ending.title, *(text for line in ending.lines for text in line), keys]
-    card_width = max(360.0, *(text_width(each, 22) + 100 for each in words))
-    height = 92.0 + 70.0 * len(ending.lines) + (36.0 if keys else 0.0)
-    canvas = Canvas(card_width, height, scale)
-    canvas.text(card_width / 2, 56, ending.title, 32, INK, "middle")
-    y = 92.0
-    for words_of_line, command in ending.lines:
-        canvas.text(40, y + 20, words_of_line, 18, QUIET)
-        canvas.text(40, y + 46, command, 22, ACCENT)
-        y += 70.0
-    if keys:
-        canvas.text(card_width / 2, y + 18, keys, 17, QUIET, "middle")
-    return canvas.card((width - card_width) / 2, (PICTURE_HEIGHT - height) / 2, 0.97)
+    room = max(360.0, width - 2 * EDGE) - 100
+    lines = [(words, wrap_text(command, room, 22)) for words, command in ending.lines]
+    texts = [ending.title, *(text for words, command in lines for text in (words, *command)), keys]
+    card_width = max(360.0, *(text_width(each, 22) + 100 for each in texts))
+    height = 92.0 + sum(42.0 + 28.0 * len(command) for _, command in lines) + 36.0 * bool(keys)
+
+    def draw(canvas: Canvas) -> None:
+        canvas.text(card_width / 2, 56, ending.title, 32, INK, "middle")
+        y = 92.0
+        for words, command in lines:
+            canvas.text(40, y + 20, words, 18, QUIET)
+            for number, text in enumerate(command):
+                canvas.text(40, y + 46 + 28 * number, text, 22, ACCENT)
+            y += 42.0 + 28.0 * len(command)
+        if keys:
+            canvas.text(card_width / 2, y + 18, keys, 17, QUIET, "middle")
+
+    return large_card((card_width, height), width, scale, draw)

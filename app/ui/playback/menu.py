@@ -1,8 +1,8 @@
 """The menu in which the player chooses camera, character and robot while a session runs."""
 
-from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from cubeling.app.ui.canvas import Canvas, Card, text_width
 from cubeling.app.ui.palette import INK, PAPER, QUIET, Color, between
-from cubeling.app.ui.playback.cards import ACCENT
+from cubeling.app.ui.playback.cards import ACCENT, centre, large_card
 from cubeling.app.ui.playback.requests import Choose
 from cubeling.app.ui.playback.status import MenuChoice
 
@@ -61,10 +61,10 @@ class Menu:
 
     def click(self, x: float, y: float, width: float) -> Choose | None:
         """Return the choice at a place of the picture, in units of the canvas; None if none is."""
-        left, top = self._corner(width)
+        left, top, scale = centre(self._size(), width)
         column, row = (
-            int((x - left - SIDE) // COLUMN_WIDTH),
-            int((y - top - ROWS_TOP) // ROW_HEIGHT),
+            int(((x - left) / scale - SIDE) // COLUMN_WIDTH),
+            int(((y - top) / scale - ROWS_TOP) // ROW_HEIGHT),
         )
         parts = list(self._columns)
         if not (0 <= column < len(parts) and 0 <= row < len(self._columns[parts[column]])):
@@ -75,7 +75,9 @@ class Menu:
 
     def draw(self, width: float, scale: float) -> Card:
         """Return the menu as a card."""
-        canvas = Canvas(*self._size(), scale)
+        return large_card(self._size(), width, scale, self._draw)
+
+    def _draw(self, canvas: Canvas) -> None:
         for place, (part, choices) in enumerate(self._columns.items()):
             left = SIDE + place * COLUMN_WIDTH
             canvas.text(left + 14, 52, part.title(), 24, INK)
@@ -83,7 +85,6 @@ class Menu:
                 self._row(canvas, left, ROWS_TOP + (row + 0.5) * ROW_HEIGHT, choice)
         words = f"{LOOKING}   {HELP}" if self._looking else HELP
         canvas.text(canvas.size[0] / 2, canvas.size[1] - 22, words, 16, QUIET, "middle")
-        return canvas.card(*self._corner(width), 0.97)
 
     def _row(self, canvas: Canvas, left: float, y: float, choice: MenuChoice) -> None:
         room = COLUMN_WIDTH - 20
@@ -106,7 +107,3 @@ class Menu:
         rows = max((len(choices) for choices in self._columns.values()), default=1)
         columns = max(1, len(self._columns))
         return 2 * SIDE + columns * COLUMN_WIDTH - 20, ROWS_TOP + rows * ROW_HEIGHT + 58
-
-    def _corner(self, width: float) -> tuple[float, float]:
-        size = self._size()
-        return (width - size[0]) / 2, (PICTURE_HEIGHT - size[1]) / 2

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
 
@@ -11,18 +12,18 @@ from numpy.typing import NDArray
 
 from cubeling.app.errors import AppError
 from cubeling.app.pipeline.registry import scenario_summary
-from cubeling.app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width, wrap_text
+from cubeling.app.ui.canvas import Canvas, Card, text_width, wrap_text
 from cubeling.app.ui.palette import INK, PAPER, QUIET, RULE, between
-from cubeling.app.ui.playback.cards import ACCENT
+from cubeling.app.ui.playback.cards import ACCENT, EDGE, centre, large_card
 
 TITLE = "What would you like to play?"
 HELP = "Press a number, or click  ·  Esc closes  ·  0 brings it back"
 SIDE, GAP, TOP, BOTTOM = 28.0, 20.0, 74.0, 52.0
-TEXT_HEIGHT, SUMMARY_SIZE, SUMMARY_LINE = 84.0, 15.0, 20.0
-"""Height of the text under a picture, size of a summary's letters, and distance of its lines."""
+NAME_HEIGHT, SUMMARY_SIZE, SUMMARY_LINE = 44.0, 15.0, 20.0
+"""Height of a name under a picture, size of a summary's letters, and distance of its lines."""
 
-MAX_LINES = 2
-"""Lines of a summary that are shown."""
+MAX_LINES = 4
+"""Lines of a summary that are shown: those of the bundled scenarios are whole."""
 
 FEW, WIDE_TILE, TILE = 4, 300.0, 224.0
 """So many scenarios are shown with wide pictures in two columns, more in three."""
@@ -46,58 +47,85 @@ class ScenarioCard:
 
     def click(self, x: float, y: float, width: float) -> int | None:
         """Return the number of the scenario at a place of the picture, from 1; None if none is."""
-        tile, columns, (left, top, _, _) = _layout(len(self._scenarios), width)
+        layout = _Layout.of(self._scenarios, width)
+        left, top, scale = centre(layout.size, width)
         for place in range(len(self._scenarios)):
-            tile_x, tile_y = _corner(place, tile, columns)
-            inside_x, inside_y = x - left - tile_x, y - top - tile_y
-            if 0.0 <= inside_x <= tile and 0.0 <= inside_y <= _height(tile):
+            tile_x, tile_y = layout.corner(place)
+            inside_x, inside_y = (x - left) / scale - tile_x, (y - top) / scale - tile_y
+            if 0.0 <= inside_x <= layout.tile and 0.0 <= inside_y <= layout.tile_height:
                 return place + 1
         return None
 
 
-def _height(tile: float) -> float:
-    return tile * 9 / 16 + TEXT_HEIGHT
+@dataclass(frozen=True)
+class _Layout:
+    """Where the pictures are on the card, and what is under them."""
+
+    tile: float
+    """Width of a picture."""
+
+    columns: int
+    """Pictures beside each other."""
+
+    summaries: tuple[tuple[str, ...], ...]
+    """What the scenarios are, in lines."""
+
+    @classmethod
+    @lru_cache(maxsize=2)
+    def of(cls, scenarios: tuple[str, ...], width: float) -> "_Layout":
+        count = len(scenarios)
+        columns = 2 if count <= FEW else 3
+        room = (width - 2 * EDGE - 2 * SIDE - (columns - 1) * GAP) / columns
+        tile = min(WIDE_TILE if count <= FEW else TILE, room)
+        return cls(tile, columns, tuple(_summary_lines(each, tile - 8) for each in scenarios))
+
+    @property
+    def tile_height(self) -> float:
+        lines = max(map(len, self.summaries), default=0)
+        return self.tile * 9 / 16 + NAME_HEIGHT + lines * SUMMARY_LINE
+
+    @property
+    def size(self) -> tuple[float, float]:
+        rows = math.ceil(len(self.summaries) / self.columns)
+        wide = 2 * SIDE + self.columns * self.tile + (self.columns - 1) * GAP
+        return wide, TOP + rows * self.tile_height + BOTTOM
+
+    def corner(self, place: int) -> tuple[float, float]:
+        """Return the top left corner of a picture on the card."""
+        row, column = divmod(place, self.columns)
+        return SIDE + column * (self.tile + GAP), TOP + row * self.tile_height
 
 
-def _corner(place: int, tile: float, columns: int) -> tuple[float, float]:
-    """Return the top left corner of a tile on the card."""
-    row, column = divmod(place, columns)
-    return SIDE + column * (tile + GAP), TOP + row * _height(tile)
-
-
-def _layout(count: int, width: float) -> tuple[float, int, tuple[float, float, float, float]]:
-    """Return the width of a tile, the columns, and left, top, width and height of the card."""
-    columns = 2 if count <= FEW else 3
-    room = (width - 2 * GAP - 2 * SIDE - (columns - 1) * GAP) / columns
-    tile = min(WIDE_TILE if count <= FEW else TILE, room)
-    rows = math.ceil(count / columns)
-    wide = 2 * SIDE + columns * tile + (columns - 1) * GAP
-    high = TOP + rows * _height(tile) + BOTTOM
-    return tile, columns, ((width - wide) / 2, (PICTURE_HEIGHT - high) / 2, wide, high)
+def _summary_lines(name: str, width: float) -> tuple[str, ...]:
+    lines = wrap_text(summary_of(name), width, SUMMARY_SIZE)
+    if len(lines) > MAX_LINES:
+        lines[MAX_LINES - 1 :] = [f"{lines[MAX_LINES - 1]} …"]
+    return tuple(lines)
 
 
 @lru_cache(maxsize=2)
 def _draw(scenarios: tuple[str, ...], present: str, width: float, scale: float) -> Card:
-    tile, columns, (left, top, wide, high) = _layout(len(scenarios), width)
-    canvas = Canvas(wide, high, scale)
-    size = min(30.0, 30.0 * (wide - 2 * SIDE) / text_width(TITLE, 30.0))
-    canvas.text(wide / 2, 50, TITLE, size, INK, "middle")
-    for place, name in enumerate(scenarios):
-        x, y = _corner(place, tile, columns)
-        canvas.picture(x, y, scenario_picture(name, round(tile * scale)), 12)
-        canvas.disc(x + 24, y + 24, 17, ACCENT)
-        canvas.text(x + 24, y + 31, f"{place + 1}", 20, PAPER, "middle")
-        y += tile * 9 / 16
-        canvas.text(x + 4, y + 25, name, 20, ACCENT if name == present else INK)
-        lines = wrap_text(summary_of(name), tile - 8, SUMMARY_SIZE)
-        if len(lines) > MAX_LINES:
-            lines[MAX_LINES - 1 :] = [f"{lines[MAX_LINES - 1]} …"]
-        for number, line in enumerate(lines):
-            baseline = y + 46 + number * SUMMARY_LINE
-            canvas.text(x + 4, baseline, line, SUMMARY_SIZE, QUIET)
-    size = min(16.0, 16.0 * (wide - 2 * SIDE) / text_width(HELP, 16.0))
-    canvas.text(wide / 2, high - 20, HELP, size, QUIET, "middle")
-    return canvas.card(left, top, 0.97)
+    layout = _Layout.of(scenarios, width)
+    wide, high = layout.size
+    tile = layout.tile
+
+    def draw(canvas: Canvas) -> None:
+        size = min(30.0, 30.0 * (wide - 2 * SIDE) / text_width(TITLE, 30.0))
+        canvas.text(wide / 2, 50, TITLE, size, INK, "middle")
+        for place, (name, lines) in enumerate(zip(scenarios, layout.summaries, strict=True)):
+            x, y = layout.corner(place)
+            canvas.picture(x, y, scenario_picture(name, round(tile * canvas.scale)), 12)
+            canvas.disc(x + 24, y + 24, 17, ACCENT)
+            canvas.text(x + 24, y + 31, f"{place + 1}", 20, PAPER, "middle")
+            y += tile * 9 / 16
+            canvas.text(x + 4, y + 25, name, 20, ACCENT if name == present else INK)
+            for number, line in enumerate(lines):
+                baseline = y + 46 + number * SUMMARY_LINE
+                canvas.text(x + 4, baseline, line, SUMMARY_SIZE, QUIET)
+        size = min(16.0, 16.0 * (wide - 2 * SIDE) / text_width(HELP, 16.0))
+        canvas.text(wide / 2, high - 20, HELP, size, QUIET, "middle")
+
+    return large_card((wide, high), width, scale, draw)
 
 
 def summary_of(name: str) -> str:

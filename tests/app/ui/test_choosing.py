@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 
 from cubeling.app.pipeline.scenario import Inputs
+from cubeling.app.scenarios import scenario_names
+from cubeling.app.ui.canvas import PICTURE_HEIGHT
+from cubeling.app.ui.palette import PAPER
+from cubeling.app.ui.playback.cards import draw_ending, draw_keys
+from cubeling.app.ui.playback.menu import Menu
 from cubeling.app.ui.playback.requests import Choose, ListChoices, Seek
-from cubeling.app.ui.playback.scenario_card import ScenarioCard
-from cubeling.app.ui.playback.status import MenuChoice
+from cubeling.app.ui.playback.scenario_card import ScenarioCard, _Layout
+from cubeling.app.ui.playback.status import EndCard, MenuChoice
 from tests.app.ui.playback_desk import desk as desk
 
 CHOICES = (
@@ -76,3 +81,54 @@ def test_each_scenario_has_a_place_of_its_own_on_the_card(count, width):
     found = {card.click(x, y, width) for y, x in places.tolist()}
     assert found == {None, *range(1, count + 1)}
     card.draw("scenario0", width, 1.0)  # those of broken packages, too
+
+
+WIDTHS = [405.0, 960.0, 1280.0]
+"""Of a picture that is upright, of 4:3 and of 16:9, in units of the canvas."""
+
+
+def menu_card(width):
+    menu = Menu()
+    parts = ("scenario", "camera", "character", "robot")
+    menu.update(tuple(MenuChoice(part, part, f"one more {part}") for part in parts), looking=False)
+    return menu.draw(width, 1.0)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda width: draw_keys(width, 1.0),
+        lambda width: draw_ending(
+            EndCard("The end", (("Next", "cubeling " * 20),)), "", width, 1.0
+        ),
+        menu_card,
+        lambda width: ScenarioCard(list("abcdefghi")).draw("a", width, 1.0),
+    ],
+    ids=["keys", "ending", "menu", "scenarios"],
+)
+def test_large_cards_lie_in_the_picture_with_all_their_words(draw, width):
+    card = draw(width)
+    left, top, right, bottom = card.box(1.0)
+    assert min(left, top) >= 0.0
+    assert right <= width
+    assert bottom <= PICTURE_HEIGHT
+    edges = (card.color[:, :5], card.color[:, -5:], card.color[:5], card.color[-5:])
+    assert all((edge == PAPER).all() for edge in edges), "words are cut off"
+
+
+def test_a_menu_that_is_drawn_smaller_is_chosen_from_where_it_is_seen(desk):
+    menu = Menu()
+    parts = ("scenario", "camera", "character", "robot")
+    menu.update(tuple(MenuChoice(part, part, part) for part in parts), looking=False)
+    left, top, right, bottom = menu.draw(405.0, 1.0).box(1.0)
+    chosen = [
+        menu.click(x, top + 0.55 * (bottom - top), 405.0) for x in np.linspace(left, right, 50)
+    ]
+    assert [each.part for each in dict.fromkeys(filter(None, chosen))] == list(parts)
+
+
+@pytest.mark.parametrize("width", [960.0, 1280.0])
+def test_what_a_bundled_scenario_is_can_be_read_to_its_end(width):
+    layout = _Layout.of(scenario_names(), width)
+    assert not any(line.endswith("…") for lines in layout.summaries for line in lines)
