@@ -32,7 +32,7 @@ from cubeling.app.scenarios import scenario_cube
 from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.speaking.listener import PushToTalk
 from cubeling.app.speaking.model.opening import open_answerer
-from cubeling.app.speaking.opening import open_speaker
+from cubeling.app.speaking.opening import has_own_lines, open_speaker
 from cubeling.app.ui.panels.monitor import SessionMonitor
 from cubeling.app.ui.playback.status import EndCard
 from cubeling.app.ui.screen import Screen
@@ -177,9 +177,9 @@ def open_session(
         pace = _pace(options, source, instruments)
         stepped = pace is None and not source.live
         replies = isinstance(scenario, ListeningScenario)
-        # What another scenario said is no reply.
+        # What another scenario said is no reply, and not what a file of rules says.
         replays = is_replay(replayed, options)
-        said = replays or not replies
+        said = replays or not (replies or has_own_lines(options.scenario))
         lines = replayed.lines if replayed is not None and said else None
         speaker = open_speaker(
             options,

@@ -3,9 +3,17 @@
 from collections.abc import Mapping, Sequence
 from functools import lru_cache, partial
 
+from cubeling.app.pipeline.registry import RULES_SUFFIX
 from cubeling.app.pipeline.table.spoken_line import Lines
 from cubeling.app.session import SessionOptions
-from cubeling.app.speaking.lines import DEFAULT_LANGUAGE, SILENT
+from cubeling.app.speaking.lines import (
+    DEFAULT_LANGUAGE,
+    SILENT,
+    bundled_languages,
+    bundled_lines,
+    languages_in,
+    read_lines_for,
+)
 from cubeling.app.speaking.recorded import RecordedSpeaker, Speaker
 from cubeling.characters import Character
 
@@ -21,8 +29,9 @@ def open_speaker(
 ) -> Speaker:
     """Return what speaks in a session; the caller closes it.
 
-    A recording says what it has. Else a voice speaks if the user has chosen a language or lines, or
-    sits in front of a window; without a voice, a character whose language nobody chose is silent.
+    A recording says what it has. Else a voice speaks if the user has chosen a language or lines,
+    sits in front of a window, or plays a file of rules that says something; without a voice, a
+    character whose language nobody chose is silent.
 
     Parameters
     ----------
@@ -48,15 +57,10 @@ def open_speaker(
     asked = options.language is not None or options.lines is not None
     if recorded is not None and not asked and (recorded or not prompted):
         return RecordedSpeaker(recorded)
-    chatty = options.language != SILENT and (asked or (options.windowed and recorded is None))
+    unasked = recorded is None and (options.windowed or has_own_lines(options.scenario))
+    chatty = options.language != SILENT and (asked or unasked)
     if not (replies or prompted or chatty):
         return RecordedSpeaker({})
-    from cubeling.app.speaking.lines import (
-        bundled_languages,
-        bundled_lines,
-        languages_in,
-        read_lines_for,
-    )
     from cubeling.app.speaking.speaker import LinesOf, LiveSpeaker
     from cubeling.app.speaking.voices import open_voice
     from cubeling.characters.speech import VoiceError
@@ -91,6 +95,11 @@ def open_speaker(
     )
     speaker.problem = problem
     return speaker
+
+
+def has_own_lines(scenario: str) -> bool:
+    """Return whether a scenario is a file of rules that says something, in a film too."""
+    return scenario.endswith(RULES_SUFFIX) and bool(bundled_languages(scenario))
 
 
 def _no_lines(scenario: str, language: str) -> None:

@@ -309,13 +309,14 @@ class _HopLine:
 
 
 class _SoundLine:
-    """Prints once why nothing is heard, as soon as it is known."""
+    """Prints once why nothing is heard or said, as soon as it is known."""
 
     def __init__(self, session: OpenedSession, console: Console) -> None:
-        self._sound, self._console = session.sound, console
+        self._watched = {"No sound": session.sound, "No speech": session.speaker}
+        self._console = console
 
     def __call__(self) -> None:
-        if self._sound is not None and self._sound.problem:
-            line = f"[dim]No sound: {escape(self._sound.problem)}[/]"
-            self._console.print(line, soft_wrap=True)
-            self._sound = None
+        for words, source in tuple(self._watched.items()):
+            if source is not None and source.problem:
+                self._console.print(f"[dim]{words}: {escape(source.problem)}[/]", soft_wrap=True)
+                del self._watched[words]

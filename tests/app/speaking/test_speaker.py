@@ -92,6 +92,36 @@ def test_without_a_voice_a_character_is_silent_unless_it_was_asked_to_speak(tmp_
         )
 
 
+@pytest.fixture
+def rules(tmp_path):
+    path = tmp_path / "rules.toml"
+    path.write_text("[[rule]]\nwhen = 'lifted'\nsay = 'Hello!'\n")
+    return str(path)
+
+
+def test_what_a_file_of_rules_says_is_heard_in_a_film_too(rules, short_session):
+    film = {"source": str(short_session), "robot": "none", "pictures": False}
+    with open_session(SessionOptions(scenario=rules, **film)) as session:
+        assert session.speaker.language == "en"
+    for silent in (
+        SessionOptions(scenario=rules, language="none", **film),
+        SessionOptions(scenario="companion", **film),
+    ):
+        with open_session(silent) as session:
+            assert not session.speaker.live
+
+
+def test_a_film_of_rules_without_a_voice_says_why_it_is_silent(rules, monkeypatch):
+    def gone():
+        raise VoiceError("no voice is installed", "sudo apt-get install -y espeak-ng")
+
+    monkeypatch.setattr(voices, "espeak", gone)
+    film = SessionOptions(scenario=rules, source="camera:0", output=Path("film.mp4"))
+    speaker = opening.open_speaker(film, [Character.load("human")], waits=True)
+    assert speaker.lines(0.0) == {}
+    assert "no voice is installed" in speaker.problem
+
+
 def test_a_voice_that_always_dies_is_given_up_and_the_session_goes_on(
     tmp_path, short_session, monkeypatch
 ):
