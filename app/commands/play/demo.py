@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from cubeling.app.commands.output import OverwriteOption, VideoCodecOption
-from cubeling.app.commands.play.first_camera import open_first_camera
+from cubeling.app.commands.play.first_camera import open_first_camera, way_without_camera
 from cubeling.app.commands.play.part import EndOption, LoopOption, StartOption
 from cubeling.app.commands.play.play_options import (
     DEFAULT_CAMERA,
@@ -80,7 +80,8 @@ def demo(
             overwrite=overwrite or output is None,
             video_codec=codec,
         )
-        render(preferences.open(options)[0], console)
+        why = "as there is no display" if output is None else "as --output asks"
+        render(preferences.open(options)[0], console, why)
         return
     with ExitStack() as closing:
         camera = None
@@ -106,8 +107,8 @@ def demo(
         play_session(options, scenario, source=camera, ending=ending, preferences=kept)
 
 
-def render(options: SessionOptions, console: Console) -> None:
-    """Render the bundled recording of a scenario to a file, and print the summary."""
+def render(options: SessionOptions, console: Console, why: str) -> None:
+    """Render the bundled recording of a scenario to a file, and print why, and the summary."""
     from cubeling.app.running.option_checks import check_output_paths
 
     assert options.output is not None
@@ -118,7 +119,7 @@ def render(options: SessionOptions, console: Console) -> None:
     console.print(
         f"The bundled recording of [bold]{options.scenario}[/] "
         f"({session_info(Path(options.source)).duration:.0f} s) "
-        f"is rendered to [bold]{options.output}[/], as there is no display or you asked for it"
+        f"is rendered to [bold]{options.output}[/], {why}"
     )
     ending = end_card(options.scenario)
     play_session(options, f"rendering {options.output.name}", ending=ending)
@@ -144,7 +145,7 @@ def _of_recording(options: SessionOptions) -> SessionOptions:
     scenario = options.scenario
     if scenario not in RECORDED_SCENARIOS:
         raise AppError(
-            f"there is no recording of '{scenario}': take a camera, "
-            f"or cubeling play {scenario} --source synthetic:companion (or follow, or sketch)"
+            f"there is no recording of '{scenario}': take a camera, or "
+            f"{way_without_camera(scenario)}"
         )
     return replace(options, source=str(bundled_session(scenario)))

@@ -8,6 +8,9 @@ from rich.console import Console
 from rich.markup import escape
 
 from cubeling.app.commands.play.play_options import DEFAULT_CAMERA
+from cubeling.app.errors import AppError
+from cubeling.app.scenarios import scenario_cube
+from cubeling.app.session.bundled import RECORDED_SCENARIOS
 
 if TYPE_CHECKING:
     from cubeling.app.session import SessionOptions
@@ -15,6 +18,26 @@ if TYPE_CHECKING:
 
 DESK = "synthetic:talk"
 """What is drawn where there is no camera: the cube beside the character."""
+
+
+def way_without_camera(scenario: str) -> str:
+    """Return the command that plays a scenario on a computer without a camera."""
+    if scenario in RECORDED_SCENARIOS:
+        return f"cubeling demo {scenario} --recording"
+    if scenario == "talk":
+        return "cubeling talk"  # which draws the desk
+    moves = "follow" if scenario_cube(scenario) == "locomotion" else "companion"
+    return f"cubeling play {scenario} --source synthetic:{moves}"
+
+
+def open_needed_camera(closing: ExitStack, scenario: str) -> "FrameSource":
+    """Open the first camera; without one, raise AppError that says how to play without it."""
+    from cubeling.tracking import TrackingError, open_source
+
+    try:
+        return closing.enter_context(open_source(DEFAULT_CAMERA))
+    except TrackingError as error:
+        raise AppError(f"{error}; without a camera: {way_without_camera(scenario)}") from error
 
 
 def open_first_camera(closing: ExitStack, instead: str = "") -> "FrameSource | None":

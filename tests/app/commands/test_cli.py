@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from cubeling.app.cli import COMMANDS, load_command
+from cubeling.app.workshop.scenario_templates import RULES
 from cubeling.characters import Character, CharacterError, rendering
 from cubeling.characters.errors import CharacterWarning
 from cubeling.tracking import TrackingError
@@ -242,6 +243,40 @@ def test_bad_input_is_one_line_and_exit_code_2(cubeling, case, bundled_session):
     assert err.count("\n") == 1
     assert named in err
     assert sorted(Path().iterdir()) == before, "something was left behind"
+
+
+@pytest.mark.parametrize(
+    ("scenario", "way"),
+    [
+        ("follow", "cubeling demo follow --recording"),
+        ("talk", "cubeling talk"),
+        ("hello.toml", "cubeling play hello.toml --source synthetic:companion"),
+    ],
+)
+def test_who_has_no_camera_is_told_how_to_play_without(cubeling, monkeypatch, scenario, way):
+    def refuse(uri):
+        raise TrackingError(f"{uri} does not exist")
+
+    monkeypatch.setattr("cubeling.tracking.open_source", refuse)
+    Path("hello.toml").write_text(RULES)
+    code, _, err = cubeling("play", scenario, "--no-pictures")
+    assert code == 2
+    assert err == f"cubeling: camera:0 does not exist; without a camera: {way}\n"
+
+
+@pytest.mark.parametrize(
+    ("chosen", "why"),
+    [(["-o", "chosen.mp4"], "as --output asks"), ([], "as there is no display")],
+)
+def test_demo_says_why_it_renders_a_file(cubeling, monkeypatch, chosen, why):
+    played = []
+    monkeypatch.setattr(
+        "cubeling.app.commands.play.progress.play_session", lambda *each, **_: played.append(each)
+    )
+    monkeypatch.setattr("cubeling.app.commands.play.demo.has_display", lambda: False)
+    code, out, _ = cubeling("demo", *chosen)
+    assert (code, len(played)) == (0, 1)
+    assert why in " ".join(out.split())
 
 
 @pytest.mark.parametrize("place", [0, 2, 4])
