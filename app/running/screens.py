@@ -81,6 +81,7 @@ def open_screen(
             virtual_robot,
             samples,
             options.video_codec,
+            options.start_s,
         )
         return closing.enter_context(output), context
     from cubeling.app.ui.playback.timeline import STRIP_HEIGHT

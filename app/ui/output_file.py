@@ -56,6 +56,8 @@ class OutputFile(NullScreen):
         What is heard in a video, as `VideoFile` takes it; None for a silent one.
     codec
         What encodes the pictures of a video, as `VideoFile` takes it.
+    start_s
+        Where in its recording the first picture is, for the captions of a sheet [s].
 
     Raises
     ------
@@ -71,6 +73,7 @@ class OutputFile(NullScreen):
         virtual_robot: VirtualRobot | None = None,
         sound: AudioSource | None = None,
         codec: str = AUTO_CODEC,
+        start_s: float = 0.0,
     ) -> None:
         self._virtual_robot = virtual_robot
         self._layout = CardLayout()
@@ -80,7 +83,7 @@ class OutputFile(NullScreen):
         if self._moving:
             self._writer = VideoFile(path, size, rate, sound, codec)
         else:
-            self._writer = FrameSheet(path)
+            self._writer = FrameSheet(path, start_s)
 
     def __enter__(self) -> Self:
         return self
@@ -127,11 +130,12 @@ class FrameSheet:
     """Writes a .png file with at most `MAX_FRAMES` pictures of a session of any length.
 
     It keeps a picture at even intervals. Whenever it has too many, it leaves out every second one
-    and doubles the interval, so the length need not be known.
+    and doubles the interval, so the length need not be known. The caption of the first one is
+    `start_s`: where a part of a recording begins [s].
     """
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
+    def __init__(self, path: Path, start_s: float = 0.0) -> None:
+        self._path, self._start_s = path, start_s
         self._kept: list[tuple[float, NDArray[np.uint8]]] = []
         self._interval = 0.0
         self._open = True
@@ -156,8 +160,8 @@ class FrameSheet:
             last = len(self._kept) - 1
             count = min(MAX_FRAMES, len(self._kept))
             picks = [self._kept[round(at)] for at in np.linspace(0, last, count)]
-            start = self._kept[0][0]
-            frames = [(f"{time - start:.1f} s", picture) for time, picture in picks]
+            first = self._kept[0][0] - self._start_s
+            frames = [(f"{time - first:.1f} s", picture) for time, picture in picks]
             save(frame_sheet(self._path.stem, frames), self._path)
 
     def discard(self) -> None:

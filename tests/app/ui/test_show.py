@@ -15,7 +15,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.cubes.tracked_cube import TrackedCube
 from cubeling.app.pipeline.step import RobotView
 from cubeling.app.running.summary.summary import Summary
-from cubeling.app.ui import video_file
+from cubeling.app.ui import output_file, video_file
 from cubeling.app.ui.canvas import Canvas, rounded_rectangle
 from cubeling.app.ui.cards.overlay import overlay
 from cubeling.app.ui.output_file import ENDING_RATE, ENDING_S, MAX_FRAMES, FrameSheet
@@ -151,6 +151,17 @@ def test_a_sheet_of_frames_spans_a_session_of_any_length(tmp_path, count):
     last = picture[-100, -100].mean()
     assert last == pytest.approx(250 * (count - 1) // count, abs=15)
     assert list(tmp_path.iterdir()) == [tmp_path / "out.png"]
+
+
+def test_captions_of_a_part_of_a_recording_count_from_its_first_frame(tmp_path, monkeypatch):
+    captions = []
+    monkeypatch.setattr(output_file, "frame_sheet", lambda _, frames: captions.extend(frames))
+    monkeypatch.setattr(output_file, "save", lambda *_: None)
+    sheet = FrameSheet(tmp_path / "out.png", start_s=12.0)
+    for time in (712.0, 713.5):  # of a camera that has run for a while
+        sheet.write(np.zeros((90, 160, 3), np.uint8), time)
+    sheet.close()
+    assert [caption for caption, _ in captions] == ["12.0 s", "13.5 s"]
 
 
 @pytest.mark.parametrize("suffix", VIDEO_FORMATS)
