@@ -31,6 +31,7 @@ from cubeling.app.pipeline.step import Step
 from cubeling.app.running.opening import open_session
 from cubeling.app.running.runner import run
 from cubeling.app.session import SessionOptions, session_info
+from cubeling.app.speaking import speaker
 from cubeling.tracking import CubeState, Frame
 from cubeling.tracking.synthetic import open_synthetic
 from tests.app.scripted import PICTURE_HEIGHT, PICTURE_WIDTH, VARIANCE, Blank
@@ -43,6 +44,10 @@ place for each channel. Two chunks a second are 18 MB in an hour at most."""
 
 RATE = 6.0
 """Pictures a second in virtual time: what the cube does lasts for longer than one."""
+
+VOICE_WAIT_S = 600.0
+"""How long a line may take in virtual time [s]: a voice that is slow on a busy computer is not said
+to be too slow, after which nothing would be spoken any more."""
 
 PHONE_RATE, PHONE_SIZE = 10.0, (320, 180)
 """Pictures a second and their size [px] in real time: what memory holds does not depend on them."""
@@ -134,6 +139,7 @@ def play_virtually(hours: float, folder: Path) -> LongPlay:
         pytest.MonkeyPatch.context() as patch,
         open_session(options, source=source) as session,
     ):
+        patch.setattr(speaker, "ANSWER_S", VOICE_WAIT_S)
         patch.setattr(TrackedCube, "track", lambda _, frame, markers: source.track(frame))
         run(session, measure).check()
         if session.speaker.problem:
