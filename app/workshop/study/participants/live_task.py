@@ -20,6 +20,7 @@ from cubeling.app.session.encoding import MESSAGE_TYPES
 from cubeling.app.workshop.study.participants.study_log import ParticipantLog, SteadyClock
 from cubeling.app.workshop.study.protocols.goals import (
     GOAL_TOPICS,
+    Ending,
     GoalWatch,
     TaskResult,
     result_of,
@@ -98,8 +99,9 @@ class LiveDesk:
         self, step: PlannedStep, task: StudyTask, settings: Settings, log: ParticipantLog
     ) -> tuple[TaskResult, str]:
         """Say what the task is, let it be played, and return how it ended, and its recording."""
-        self.tell(task.name, task.text)
+        self.tell(task.title, task.text)
         self.give_way()
+        log.write({"tries": step.key}, self.now())
         record = free_recording(log.folder, task, step.condition)
         options = replace(
             self._setup.options(task, settings),
@@ -168,17 +170,20 @@ def play_task(
             options, source=source, front_end=front_end, instruments=instruments
         ) as session:
             summary = run(session, follow)
+            ended_by: Ending = "person" if session.screen.closed else "source"
         summary.check()
         if summary.interrupted:
             raise KeyboardInterrupt
     except _TaskOverError:
-        pass
+        ended_by = "goal" if watch.reached and task.ends == "goal" else "limit"
     assert options.record is not None, "a task is recorded"
-    return judge(options.record, task)
+    return replace(judge(options.record, task), ended_by=ended_by)
 
 
 def judge(session: Path, task: StudyTask) -> TaskResult:
     """Return how a task ended, by the channels of its recording, in parts or not.
+
+    That the participant ended it is not among them: `ended_by` is then "source".
 
     Raises AppError if it cannot be read.
     """

@@ -52,20 +52,13 @@ def run_participant(
         began = desk.now()
         if step.kind == "instruction":
             instruction = protocol.instructions[step.part]
-            desk.tell(instruction.name, instruction.text)
+            desk.tell(instruction.title, instruction.text)
             found: dict[str, object] = {"read": True}
         elif step.kind == "task":
             task = protocol.tasks[step.part]
             settings = protocol.conditions.get(step.condition, Settings())
             result, recording = desk.play(step, task, settings, log)
-            found = {
-                "reached": result.reached,
-                "time_s": result.time_s,
-                "played_s": result.played_s,
-                "recording": recording,
-            }
-            if result.acts:
-                found["acts"] = [asdict(each) for each in result.acts]
+            found = {**asdict(result), "recording": recording}
         else:
             questionnaire = protocol.questionnaires[step.questionnaire]
             item = next(each for each in questionnaire.item if each.name == step.item)

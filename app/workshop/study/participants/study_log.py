@@ -9,8 +9,9 @@ import json
 import os
 import re
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -70,6 +71,9 @@ class Participant:
 
     times_begun: int
     """How often they began; 1 for those who were not interrupted."""
+
+    attempts: Mapping[str, int] = field(default_factory=dict)
+    """How often they began each task, by its key, those that were interrupted too."""
 
     @property
     def done(self) -> frozenset[str]:
@@ -271,16 +275,18 @@ class ParticipantLog:
 def read_participant(folder: Path) -> Participant:
     """Read what a participant did; raises AppError."""
     entries, _ = read_log(folder / LOG_NAME)
-    begun, number, kept = 0, 0, dict[str, Entry]()
+    begun, number, kept, attempts = 0, 0, dict[str, Entry](), Counter[str]()
     for entry in entries:
         if "begins" in entry:
             begun += 1
             number = entry["number"] if isinstance(entry.get("number"), int) else 0
             keys = set(entry.get("kept", ()))
             kept = {key: each for key, each in kept.items() if key in keys}
+        elif "tries" in entry:
+            attempts[str(entry["tries"])] += 1
         elif "key" in entry:
             kept[str(entry["key"])] = entry
-    return Participant(folder.name, number, folder, tuple(kept.values()), begun)
+    return Participant(folder.name, number, folder, tuple(kept.values()), begun, attempts)
 
 
 def participants_in(study: Path) -> list[Participant]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from cubeling.app.errors import AppError
 from cubeling.app.session import WizardAct
@@ -103,6 +103,11 @@ class Goal:
         return (least is None or value >= least) and (most is None or value <= most)
 
 
+Ending = Literal["goal", "limit", "person", "source"]
+"""What ended a task: the goal was reached, the time was up, the participant ended it, or there were
+no more pictures."""
+
+
 @dataclass(frozen=True)
 class TaskResult:
     """How a task ended."""
@@ -115,6 +120,8 @@ class TaskResult:
 
     played_s: float
     """How long it lasted [s]."""
+
+    ended_by: Ending
 
     acts: tuple[WizardAct, ...] = ()
     """What a wizard did in it."""
@@ -161,7 +168,9 @@ class GoalWatch:
     def result(self) -> TaskResult:
         """How it ended so far."""
         reached = None if self._reached is None else round(self._reached, 6)
-        return TaskResult(reached is not None, reached, round(min(self._last, self._limit_s), 6))
+        ended: Ending = "goal" if self.reached else "limit" if self.time_is_up else "source"
+        played_s = round(min(self._last, self._limit_s), 6)
+        return TaskResult(reached is not None, reached, played_s, ended)
 
 
 def result_of(goal: Goal, limit_s: float, messages: Iterable[tuple[str, float, Any]]) -> TaskResult:

@@ -49,14 +49,38 @@ def task_parts(data: StudyData) -> Iterator[str]:
         if not own:
             continue
         yield heading(f"{name}: {task.goal.words} within {task.limit_s:g} s", 3)
-        lines = []
-        for condition, played in _by_condition(data, own).items():
+        lines, counted = [], [row for row in own if not _is_cut_off(row)]
+        for condition, played in _by_condition(data, counted).items():
             reached = sum(bool(row["reached"]) for row in played)
             share = f"{reached} of {len(played)} ({percent(reached / len(played), 0)})"
             lines.append((_condition(condition), share, share_bounds(reached, len(played))))
-        yield table(ReportTable("Reached", ("condition", "reached", "95 % interval"), tuple(lines)))
+        columns = ("condition", "reached", "95 % interval")
+        yield table(ReportTable("Reached", columns, tuple(lines), _how_counted(own, task.ends)))
         times = _per_condition(own, "time_s")
         yield from _compared(data, f"Time to the goal [s]: {name}", times, "time [s]", (0.0, None))
+
+
+def _is_cut_off(row: Row) -> bool:
+    """Return whether a task ended for a reason that says nothing about the participant."""
+    return row["ended_by"] == "source" and not row["reached"]
+
+
+def _how_counted(rows: Sequence[Row], ends: str) -> str:
+    """Return how tasks count that did not go on to their goal or limit; "" if all did."""
+    left = [row for row in rows if row["ended_by"] == "person" and not row["reached"]]
+    cut = [row for row in rows if _is_cut_off(row)]
+    again = [row for row in rows if (row["attempt"] or 1) > 1]
+    early = "before goal and limit" if ends == "goal" else "before the goal"
+    words = (
+        (left, f"Ended by the participant {early}, counted as not reached"),
+        (cut, "Cut off, as there were no more pictures, not counted"),
+        (again, "Begun again after an interruption, of which the last attempt counts"),
+    )
+    return " ".join(
+        f"{what}: {', '.join(dict.fromkeys(str(row['participant']) for row in found))}."
+        for found, what in words
+        if found
+    )
 
 
 def wizard_parts(data: StudyData) -> Iterator[str]:

@@ -56,6 +56,10 @@ COLUMNS: dict[str, dict[str, str]] = {
         "time_s": "When, from the first frame [s]; empty if it was not",
         "played_s": "How long it lasted [s]",
         "limit_s": "The limit [s]",
+        "ended_by": "goal, limit, person (the participant ended it) or source (there were no more "
+        "pictures); empty where it was not noted",
+        "attempt": "Which attempt this is: more than 1 if earlier ones were interrupted, whose "
+        "recordings are kept, too; empty for simulated ones and where it was not noted",
         "recording": "File of the session in the participant's folder; empty for simulated ones",
     },
     "acts": {
@@ -127,7 +131,7 @@ def gather(protocol: Protocol, kind: str, people: Sequence[Participant]) -> Stud
         ]
         played = [each for each in done if each[0].kind == "task"]
         tables["tasks"] += [
-            {**who, **_task_row(protocol, place, step, entry)}
+            {**who, **_task_row(person, protocol, place, step, entry)}
             for place, (step, entry) in enumerate(played, 1)
         ]
         tables["acts"] += [{**who, **row} for each in played for row in _act_rows(*each)]
@@ -152,7 +156,9 @@ def _answer_row(step: PlannedStep, entry: Entry) -> Row:
     }
 
 
-def _task_row(protocol: Protocol, place: int, step: PlannedStep, entry: Entry) -> Row:
+def _task_row(
+    person: Participant, protocol: Protocol, place: int, step: PlannedStep, entry: Entry
+) -> Row:
     task = protocol.tasks[step.part]
     return {
         "condition": step.condition,
@@ -162,6 +168,8 @@ def _task_row(protocol: Protocol, place: int, step: PlannedStep, entry: Entry) -
         "goal": task.goal.words,
         **{name: entry.get(name) for name in ("reached", "time_s", "played_s")},
         "limit_s": task.limit_s,
+        "ended_by": entry.get("ended_by"),
+        "attempt": person.attempts.get(step.key),
         "recording": entry.get("recording"),
     }
 

@@ -25,8 +25,12 @@ from cubeling.app.workshop.study.bundled import (
     whose_idle_motion,
 )
 from cubeling.app.workshop.study.participants.study_log import StudyFolder, participants_in
-from cubeling.app.workshop.study.protocols.protocol_file import bundled_protocols, load_protocol
-from cubeling.app.workshop.study.reporting.measures import wizard_parts
+from cubeling.app.workshop.study.protocols.protocol_file import (
+    bundled_protocols,
+    load_protocol,
+    read_protocol,
+)
+from cubeling.app.workshop.study.reporting.measures import task_parts, wizard_parts
 from cubeling.app.workshop.study.reporting.statistics import (
     compare_paired,
     compare_several,
@@ -278,10 +282,34 @@ def test_a_participant_plays_and_answers_and_goes_on_later(
     answers = {row["item"]: row["answer"] for row in rows_of(tmp_path / "s" / "answers.csv")}
     assert answers == {"easy": "4.0", "more": "It was fun."}
     (task,) = rows_of(tmp_path / "s" / "tasks.csv")
-    assert (task["reached"], task["recording"]) == ("0", "kiss.mcap")
+    told = [task[name] for name in ("reached", "ended_by", "attempt", "recording")]
+    assert told == ["0", "limit", "1", "kiss.mcap"]
     assert "It was fun." in (tmp_path / "s" / "report.html").read_text("utf-8")
     code, _, err = cubeling(*run)
     assert (code, err) == (2, "cubeling: 'P01' has taken part already: use another code\n")
+
+
+def test_the_report_says_how_tasks_count_that_did_not_go_on_to_the_end(tmp_path):
+    (tmp_path / "x.toml").write_text(LIVE)
+    protocol = read_protocol(tmp_path / "x.toml")
+    study = StudyFolder(tmp_path / "s", protocol, tmp_path / "x.toml", "study")
+    ends = {"P01": "goal", "P02": "limit", "P03": "person", "P04": "source"}
+    for code, ended_by in ends.items():
+        log = study.begin(code, datetime(2026, 5, 4))
+        key = log.plan[0].key
+        for _ in range(1 + (code == "P02")):  # whose first attempt was interrupted
+            log.write({"tries": key}, datetime(2026, 5, 4))
+        reached = ended_by == "goal"
+        found = {"reached": reached, "time_s": 0.5 if reached else None, "played_s": 0.5}
+        log.write({"key": key, **found, "ended_by": ended_by}, datetime(2026, 5, 4))
+    data = gather(protocol, "study", participants_in(tmp_path / "s"))
+    assert [row["ended_by"] for row in data.tables["tasks"]] == list(ends.values())
+    assert [row["attempt"] for row in data.tables["tasks"]] == [1, 2, 1, 1]
+    words = re.sub(r"<[^>]+>", " ", "".join(task_parts(data)))
+    assert "1 of 3 (33 %)" in words
+    assert "Ended by the participant before goal and limit, counted as not reached: P03." in words
+    assert "Cut off, as there were no more pictures, not counted: P04." in words
+    assert "of which the last attempt counts: P02." in words
 
 
 @pytest.mark.parametrize(

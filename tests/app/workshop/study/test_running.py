@@ -1,5 +1,6 @@
 """Studies that run: tasks judged by their channels, kills that lose one answer, bad protocols."""
 
+import itertools
 import os
 import signal
 import subprocess
@@ -12,9 +13,10 @@ import numpy as np
 import pytest
 
 from cubeling.app.errors import AppError
-from cubeling.app.session import SessionFile
+from cubeling.app.session import SessionFile, SessionOptions
 from cubeling.app.session.encoding import MESSAGE_TYPES
-from cubeling.app.workshop.study.participants.live_task import judge
+from cubeling.app.ui.screen import NullScreen
+from cubeling.app.workshop.study.participants.live_task import judge, play_task
 from cubeling.app.workshop.study.participants.running import run_participant, run_simulated
 from cubeling.app.workshop.study.participants.simulated import BEGIN, SimulatedDesk, simulate_task
 from cubeling.app.workshop.study.participants.study_log import (
@@ -200,6 +202,25 @@ def test_a_task_is_judged_by_the_channels_of_its_recording(scripted_session):
     late = judge(session, replace(task, limit_s=since - first))
     assert (late.reached, late.time_s) == (False, None)
     assert late.played_s == pytest.approx(since - first)
+
+
+@pytest.mark.parametrize("ended_by", ["source", "person", "limit"])
+def test_the_log_tells_what_ended_a_task(tmp_path, monkeypatch, ended_by):
+    asked = itertools.count()
+    monkeypatch.setattr(
+        NullScreen, "closed", property(lambda _: ended_by == "person" and next(asked) > 2)
+    )
+    options = SessionOptions(
+        scenario="companion",
+        source="synthetic:companion?rate=5&size=160x90",
+        end_s=1.0,
+        record=tmp_path / "x.mcap",
+        pictures=False,
+    )
+    limit_s = 0.5 if ended_by == "limit" else 60.0
+    task = StudyTask("t", "", "companion", Goal("mood", "angry"), limit_s)
+    result = play_task(options, task)
+    assert (result.reached, result.ended_by) == (False, ended_by)
 
 
 def test_a_goal_that_must_hold_begins_again_when_it_was_lost():
