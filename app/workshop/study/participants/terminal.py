@@ -36,7 +36,9 @@ class TerminalDesk(LiveDesk):
     def tell(self, title: str, text: str) -> None:
         """Show a text until Enter is pressed."""
         self._console.print()
-        self._console.print(Panel(Text(text), title=Text(title), title_align="left"))
+        self._console.print(
+            Panel(Text(text), title=Text(title) if title else None, title_align="left")
+        )
         self._read("Enter goes on ")
 
     def ask(self, step: PlannedStep, questionnaire: Questionnaire, item: Item) -> Answer:
@@ -44,7 +46,7 @@ class TerminalDesk(LiveDesk):
         place = (step.key.rpartition("/")[0], step.place)
         if place != self._about:
             self._about = place
-            self._console.rule(Text(questionnaire.title or questionnaire.name))
+            self._console.rule(Text(questionnaire.title))
             if step.stimulus:
                 self._console.print(Text(shown(self._protocol.stimuli[step.part], step)))
         self._console.print(Text(item.words, "bold"))

@@ -21,6 +21,8 @@ class Instruction:
 
     name: str
     text: str
+    title: str = ""
+    """What stands above it; "" for nothing."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,9 @@ class StudyTask:
 
     then: tuple[str, ...] = ()
     """Questionnaires that follow it."""
+
+    title: str = ""
+    """What stands above the text; "" for nothing."""
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,7 @@ class Questionnaire:
 
     name: str
     title: str = ""
-    """What stands above it."""
+    """What stands above it; "" for nothing."""
 
     source: str = ""
     """The publication that it is from; "" for one of the protocol."""

@@ -163,7 +163,7 @@ class WindowDesk(LiveDesk):
         """Show what the question is about and the question, until there is an answer."""
         files = files_of(self._protocol, step, self._folder)
         sheet = Sheet(
-            questionnaire.title or questionnaire.name,
+            questionnaire.title,
             item=item,
             captions=captions_of(files),
             pictures=pictures_of(item, self._folder),
