@@ -18,7 +18,7 @@ HEARD.sheet = message => {
   sheet.scrollTop = 0;
   loaded.splice(0).forEach(URL.revokeObjectURL);
   sheet.querySelectorAll("[data-from]").forEach(load);
-  const title = sheet.firstElementChild?.querySelector("h1, h2") || sheet.firstElementChild;
+  const title = sheet.firstElementChild?.querySelector("h1, h2, .text") || sheet.firstElementChild;
   if (title) title.tabIndex = -1;
   title?.focus(); // so that it is read
 };
@@ -29,6 +29,10 @@ async function load(shown) {
     if (answer.ok) loaded.push(shown.src = URL.createObjectURL(await answer.blob()));
   } catch { asked = {}; } // once more when it is connected again
 }
+
+sheet.oninput = sheet.onclick = ({target}) => { // a slider that nobody touched has no answer
+  if (target.type === "range") target.name = "answer";
+};
 
 sheet.onsubmit = event => {
   event.preventDefault();

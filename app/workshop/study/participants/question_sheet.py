@@ -16,8 +16,7 @@ def waiting_sheet(words: str) -> str:
 
 def text_sheet(title: str, text: str) -> str:
     """Return the sheet of an instruction."""
-    body = f'<h1>{escape(title)}</h1><p class="text">{escape(text)}</p>'
-    return _form(body)
+    return _form(f'{_heading(title)}<p class="text">{escape(text)}</p>')
 
 
 def question_sheet(
@@ -40,13 +39,16 @@ def question_sheet(
     problem
         Why the last answer was none; "" for no reason.
     """
-    title = questionnaire.title or questionnaire.name
     warning = f'<p class="problem">{escape(problem)}</p>' if problem else ""
     figures = "".join(_figure(*each) for each in shown)
     seen = f'<div class="shown">{figures}</div>' if shown else ""
     asked = f"<h2>{escape(item.text)}</h2>" if item.text else ""
-    body = f"<h1>{escape(title)}</h1>{seen}{asked}{warning}{_field(item, pictures)}"
-    return _form(body)
+    head = _heading(questionnaire.title)
+    return _form(f"{head}{seen}{asked}{warning}{_field(item, pictures)}")
+
+
+def _heading(title: str) -> str:
+    return f"<h1>{escape(title)}</h1>" if title else ""
 
 
 def _form(body: str) -> str:
@@ -82,9 +84,10 @@ def _field(item: Item, pictures: Sequence[str]) -> str:
     ends = f'<div class="ends"><span>{escape(low)}</span><span>{escape(high)}</span></div>'
     if item.kind == "slider":
         step = (item.high - item.low) / 200.0
+        # It gets its name when it is touched: the middle, where it is at first, is no answer.
         return (
-            f'<input type="range" name="answer" min="{item.low:g}" max="{item.high:g}" '
-            f'step="{step:g}"{label}>{ends}'
+            f'<input type="range" min="{item.low:g}" max="{item.high:g}" step="{step:g}"{label}>'
+            f"{ends}"
         )
     values = [f"{point:g}" for point in item.answers]
     named = len(item.anchors) == len(values) > 2

@@ -4,6 +4,7 @@ import asyncio
 import re
 import threading
 from contextlib import asynccontextmanager, closing
+from dataclasses import replace
 from datetime import datetime
 
 import aiohttp
@@ -17,7 +18,11 @@ from cubeling.app.running.pages import open_pages
 from cubeling.app.workshop.study.participants import page_desk, study_log
 from cubeling.app.workshop.study.participants.live_task import TaskSetup
 from cubeling.app.workshop.study.participants.page_desk import PageDesk
-from cubeling.app.workshop.study.participants.question_sheet import MAX_TEXT_CHARS
+from cubeling.app.workshop.study.participants.question_sheet import (
+    MAX_TEXT_CHARS,
+    question_sheet,
+    text_sheet,
+)
 from cubeling.app.workshop.study.participants.running import run_participant
 from cubeling.app.workshop.study.participants.study_log import (
     SteadyClock,
@@ -185,6 +190,17 @@ def test_a_participant_reads_sees_and_answers_on_a_page(study, tmp_path):
     assert list(answers.values()) == [None, 1.0, 0.25, "red & blue", "Ünï <b>"]
 
 
+def test_no_name_of_the_protocol_stands_above_a_sheet(tmp_path):
+    (tmp_path / "x.toml").write_text(ON_A_PHONE)
+    protocol = read_protocol(tmp_path / "x.toml")
+    questions = protocol.questionnaires["end"]
+    assert "<h1" not in question_sheet(questions, questions.item[0])
+    assert "<h1>You</h1>" in question_sheet(replace(questions, title="You"), questions.item[0])
+    for part in (protocol.instructions["hello"], protocol.tasks["stroll"]):
+        assert "<h1" not in text_sheet(part.title, part.text)
+        assert "<h1>Now</h1>" in text_sheet("Now", part.text)
+
+
 def test_only_who_knows_the_token_gets_stimuli_and_only_those_that_are_shown(study, tmp_path):
     async def use(server):
         async with browser_of(server) as browser:
@@ -302,6 +318,11 @@ name = "fun"
 text = "Was it fun?"
 high = 3
 pictures = ["faces"]
+[[questionnaire.item]]
+name = "calm"
+text = "How calm were you?"
+kind = "slider"
+high = 9
 """
 
 
@@ -341,12 +362,19 @@ def test_a_phone_is_the_page_of_the_questions_the_window_and_the_camera(tmp_path
             await tab.until("!stream && sheet.querySelectorAll('img[src]').length === 3")
             await tab.run("sheet.querySelectorAll('input')[2].click()")
             await tab.run("document.querySelector('#sheet button').click()")
+            await tab.until("$('sheet').textContent.includes('How calm')")
+            await tab.run("document.querySelector('#sheet button').click()")
+            # Nobody has touched it: its middle is no answer.
+            await tab.until("$('sheet').textContent.includes('an answer is needed here')")
+            await tab.run("document.querySelector('#sheet input').click()")
+            await tab.run("document.querySelector('#sheet button').click()")
             await tab.until("over && $('sheet').textContent.includes('Thank you')")
             assert not [each for each in tab.log if "exception" in each]
 
     asyncio.run(use())
-    _, task, answer = read_participant(tmp_path / "s/P01").entries
-    assert answer["answer"] == 3.0
+    _, task, answer, calm = read_participant(tmp_path / "s/P01").entries
+    assert (answer["answer"], calm["answer"]) == (3.0, 5.0)
+    assert task["ended_by"] == "person"
     assert task["played_s"] > 1.0
     with open_source(str(tmp_path / "s/P01" / task["recording"])) as frames:
         assert next(iter(frames)).encoded, "the phone's own picture"
