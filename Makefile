@@ -43,8 +43,9 @@ campaign: .venv/ready-dev  ## the long runs: exchanges with robots, planted faul
 	$(BIN)/python -m tests.campaigns.talk
 	$(BIN)/python -m tests.campaigns.files --files 1e5
 	$(BIN)/python -m tests.campaigns.kills
+	$(BIN)/python -m tests.campaigns.study_kills
 	$(BIN)/python -m tests.campaigns.camera_faults
-	$(BIN)/python -m tests.campaigns.long_play --hours 4
+	$(BIN)/python -m tests.campaigns.long_play --hours 10
 	$(BIN)/python -m tests.campaigns.long_play --minutes 30
 	$(BIN)/python -m tests.campaigns.tracker
 	$(BIN)/python -m tests.campaigns.two_cubes
@@ -64,6 +65,7 @@ campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
 	$(BIN)/python -m tests.campaigns.talk --turns 1e4
 	$(BIN)/python -m tests.campaigns.files --files 1e4
 	$(BIN)/python -m tests.campaigns.kills --kills 10
+	$(BIN)/python -m tests.campaigns.study_kills --kills 1
 	$(BIN)/python -m tests.campaigns.camera_faults --faults stall "huge header"
 	$(BIN)/python -m tests.campaigns.long_play --hours 0.1
 	$(BIN)/python -m tests.campaigns.tracker --frames 1200

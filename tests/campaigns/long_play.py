@@ -1,6 +1,6 @@
 """Play for hours with voice, robot and recording, and look for growth.
 
-`python -m tests.campaigns.long_play --hours 4` plays in virtual time: the script of `companion`
+`python -m tests.campaigns.long_play --hours 10` plays in virtual time: the script of `companion`
 again and again, with the true pose of the cube, a voice, a simulated robot and a recording.
 `python -m tests.campaigns.long_play --minutes 30` plays in real time: the whole program before a
 phone on the loopback network, with the same. The exit code is 1 if something grew beyond what a
@@ -203,7 +203,7 @@ def main() -> int:
     """Play, print what was measured, and return 1 if something was wrong."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     how = parser.add_mutually_exclusive_group()
-    how.add_argument("--hours", type=float, default=4.0, help="of virtual time")
+    how.add_argument("--hours", type=float, default=10.0, help="of virtual time")
     how.add_argument("--minutes", type=float, help="of real time instead")
     wanted = parser.parse_args()
     if shutil.which("espeak-ng") is None:

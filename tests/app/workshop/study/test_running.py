@@ -1,9 +1,6 @@
 """Studies that run: tasks judged by their channels, kills that lose one answer, bad protocols."""
 
 import itertools
-import os
-import signal
-import subprocess
 import sys
 from dataclasses import replace
 from datetime import timedelta
@@ -24,6 +21,7 @@ from cubeling.app.workshop.study.participants.study_log import (
     StudyFolder,
     participants_in,
     read_participant,
+    read_study,
 )
 from cubeling.app.workshop.study.protocols.goals import Goal, GoalWatch
 from cubeling.app.workshop.study.protocols.plan import plan_of
@@ -34,6 +32,7 @@ from cubeling.app.workshop.study.protocols.protocol_file import (
     protocol_text,
     read_protocol,
 )
+from tests.campaigns.study_kills import MAX_LOST, lost_answers
 
 NOW = BEGIN + timedelta(hours=6)  # when simulated participants take part
 
@@ -93,34 +92,12 @@ def test_a_log_that_is_cut_anywhere_loses_at_most_one_answer(tmp_path, name):
         assert folder.has_finished(read_participant(path.parent))
 
 
-SCRIPT = """
-import sys
-from datetime import datetime
-from pathlib import Path
-from cubeling.app.workshop.study.participants.running import run_participant
-from cubeling.app.workshop.study.participants.simulated import SimulatedDesk
-from cubeling.app.workshop.study.participants.study_log import StudyFolder
-from cubeling.app.workshop.study.protocols.protocol_file import load_protocol
-
-protocol, file = load_protocol("whose-idle-motion")
-study = StudyFolder(Path(sys.argv[1]), protocol, file, "study")
-run_participant(protocol, study.begin("P01", datetime(2026, 5, 4)), SimulatedDesk(protocol, 0),
-                lambda step: print(step.key, flush=True))
-"""
-
-
 @pytest.mark.full
 @pytest.mark.slow(reason="a program is started and killed, three times")
 @pytest.mark.skipif(sys.platform == "win32", reason="kill -9")
-@pytest.mark.parametrize("answers", [1, 7, 30])
-def test_a_killed_program_loses_at_most_one_answer(tmp_path, answers):
-    with subprocess.Popen(
-        [sys.executable, "-c", SCRIPT, str(tmp_path / "s")], stdout=subprocess.PIPE, text=True
-    ) as program:
-        assert program.stdout is not None
-        said = [program.stdout.readline().strip() for _ in range(answers)]
-        os.kill(program.pid, signal.SIGKILL)
-    assert set(said) <= read_participant(tmp_path / "s" / "P01").done
+def test_a_killed_program_loses_at_most_one_answer(tmp_path):
+    lost = lost_answers("whose-idle-motion", 3, np.random.default_rng(1), tmp_path / "s")
+    assert max(lost) <= MAX_LOST
 
 
 @pytest.mark.parametrize(
@@ -259,6 +236,11 @@ scenario = "companion"
         (TASK + 'goal = { value = "face", equals = "lid" }', "never 'lid'"),
         (TASK + 'goal = { value = "joy", equals = "x" }', "cannot ask for 'joy'"),
         (TASK + 'limit_s = 5\ngoal = { value = "mood", equals = "happy", hold_s = 9 }', "holds 9"),
+        ('conditions = ["shy"]\n[condition.bold]\n', "none of the conditions, which are shy"),
+        (
+            TASK.replace("companion", "compagnon") + 'goal = { value = "mood", equals = "happy" }',
+            "task[0].scenario: no scenario is called",
+        ),
         (TASK.replace('"t"]', '"u"]') + 'goal = { value = "mood", equals = "happy" }', "names 'u'"),
         ('title = "x"', "at least one"),
         ('title = "x"\nconditions = ["a", "a"]', "same name"),
@@ -284,6 +266,28 @@ def test_a_protocol_that_cannot_be_run_is_refused_in_one_line(tmp_path, text, wo
     assert "x.toml" in line
 
 
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ('character = "dino"', "no bundled character 'dino'"),
+        ('personality = "friendly"', "no personality 'friendly'"),
+        ('controller = "tre"', "no controller is called 'tre'"),
+        ("turns = 0", "from 0.1 to 20"),
+    ],
+)
+def test_a_trial_with_simulated_participants_meets_what_people_would_meet(
+    cubeling, tmp_path, setting, words
+):
+    text = protocol_text(None).replace("turns = 1.0", setting)
+    (tmp_path / "x.toml").write_text(text, "utf-8")
+    code, _, err = cubeling("study", "run", "x.toml", "-o", "s", "--simulated", "1")
+    assert (code, len(err.splitlines())) == (2, 1)
+    assert words in err
+    assert "x.toml: condition" in err
+    assert "'one turn'" in err
+    assert not (tmp_path / "s").exists()
+
+
 def test_the_template_is_a_protocol_with_two_conditions_and_five_questions(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(protocol_text(None), encoding="utf-8")
@@ -305,10 +309,20 @@ def test_a_protocol_names_the_buttons_of_a_wizards_desk(tmp_path):
         read_protocol(path)
 
 
+def test_a_study_in_which_nobody_has_begun_is_made_anew(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(protocol_text(None), encoding="utf-8")
+    StudyFolder(tmp_path / "s", read_protocol(path), path, "pilot")
+    path.write_text(protocol_text(None) + "\n# another\n", encoding="utf-8")
+    study = StudyFolder(tmp_path / "s", read_protocol(path), path, "study")
+    study.begin("P01", NOW)
+    assert read_study(tmp_path / "s")[1:] == ("study", False)
+
+
 def test_a_changed_protocol_is_kept_beside_the_first_one(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(protocol_text(None), encoding="utf-8")
-    StudyFolder(tmp_path / "s", read_protocol(path), path, "study")
+    StudyFolder(tmp_path / "s", read_protocol(path), path, "study").begin("P01", NOW)
     first = Path(tmp_path / "s" / "protocol.toml").read_text("utf-8")
     path.write_text(protocol_text(None) + "\n# another\n", encoding="utf-8")
     StudyFolder(tmp_path / "s", read_protocol(path), path, "study")
