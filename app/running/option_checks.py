@@ -14,6 +14,7 @@ from cubeling.app.speaking.lines import (
     read_lines_for,
 )
 from cubeling.app.ui.output_formats import OUTPUT_SUFFIXES, check_video_codec
+from cubeling.characters import check_controller
 
 
 def check_part(options: SessionOptions) -> None:
@@ -55,6 +56,7 @@ def check_inputs(options: SessionOptions) -> None:
     check_look(options.look)
     check_speed_map(options.speed_map)
     check_turns(options.turns)
+    check_controller(options.controller)
     if options.personality is not None:
         Personality.load(options.personality)
     check_lines(options)

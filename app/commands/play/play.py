@@ -69,7 +69,6 @@ from cubeling.app.pipeline.choices import (
 from cubeling.app.running.quality_control import AUTO_QUALITY, checked_quality
 from cubeling.app.scenarios import check_scenario
 from cubeling.app.ui.display import has_display
-from cubeling.characters import check_controller
 
 
 @with_preferences
@@ -145,7 +144,6 @@ def play(
     Example: cubeling play companion --record today.mcap
     """
     check_scenario(scenario)
-    check_controller(controller)
     from cubeling.app.running.option_checks import check_inputs, check_output_paths
     from cubeling.app.session import NO_VIDEO, SessionOptions
 

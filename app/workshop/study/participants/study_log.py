@@ -129,7 +129,8 @@ class StudyFolder:
     Parameters
     ----------
     path
-        Its folder, which is made for a new study, but not the one that it is in.
+        Its folder, which is made for a new study, but not the one that it is in. One in which
+        nobody has begun is made anew.
     protocol, source
         Its protocol, and the file of that.
     kind
@@ -147,7 +148,8 @@ class StudyFolder:
         """Whether each answer is on the disk before the next one: simulated ones are made again."""
         about = {"format": FORMAT, "protocol": protocol.name, "kind": kind, "seed": protocol.seed}
         known = path / ABOUT_NAME
-        if is_there(known):
+        begun = is_there(known) and bool(participants_in(path))
+        if begun:
             before = read_about(known)
             for name, what in (("protocol", "the study"), ("kind", "participants of the kind")):
                 if before.get(name) != about[name]:
@@ -157,7 +159,7 @@ class StudyFolder:
                     )
             self._follow_change(source)
             return
-        if path.exists() and (not path.is_dir() or any(path.iterdir())):
+        if path.exists() and not is_there(known) and (not path.is_dir() or any(path.iterdir())):
             raise AppError(f"'{path}' is not empty and holds no study: choose another folder")
         try:
             path.mkdir(exist_ok=True)

@@ -7,10 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
-from cubeling.affect import Personality
+from cubeling.affect import AffectError, Personality
 from cubeling.app.errors import AppError
+from cubeling.app.running.option_checks import check_inputs
 from cubeling.app.running.wizard.plan import WizardPlan
 from cubeling.app.scenarios import check_scenario, find_scenario
+from cubeling.app.session import SessionOptions
 from cubeling.app.workshop.study.protocols.forms import questionnaire_of
 from cubeling.app.workshop.study.protocols.orders import MAX_CONDITIONS
 from cubeling.app.workshop.study.protocols.protocol import (
@@ -24,6 +26,7 @@ from cubeling.app.workshop.study.protocols.protocol import (
     StudyTask,
 )
 from cubeling.app.workshop.study.protocols.questionnaires import Questionnaire
+from cubeling.characters import CharacterError
 from cubeling.toml_file import MAX_LONG_FILE_BYTES, TomlTable, parse, toml_kind
 from cubeling.tracking import CubeModel
 
@@ -70,7 +73,13 @@ def load_protocol(name_or_path: str) -> tuple[Protocol, Path]:
         if name_or_path not in bundled_protocols():
             known = ", ".join(bundled_protocols())
             raise AppError(f"no protocol is called '{name_or_path}': choose {known}, or a .toml")
-    return read_protocol(path), path
+    protocol = read_protocol(path)
+    for name, settings in protocol.conditions.items():
+        try:
+            check_inputs(SessionOptions(scenario="companion", source="camera:0", **vars(settings)))
+        except (AppError, AffectError, CharacterError) as error:
+            raise AppError(f"{path.name}: condition {name!r}: {error}") from None
+    return protocol, path
 
 
 def protocol_text(like: str | None) -> str:
@@ -94,7 +103,8 @@ def _protocol(file: TomlTable, path: Path) -> Protocol:
     settings = {name: table.fill(Settings) for name, table in file.tables("condition").items()}
     for name in settings:
         if name not in names:
-            raise file.wrong("condition", f"{name!r} is none of the conditions")
+            known = ", ".join(names) or "none"
+            raise file.wrong("condition", f"{name!r} is none of the conditions, which are {known}")
     protocol = Protocol(
         path.stem,
         file.line("title"),
@@ -153,7 +163,10 @@ def _task(row: TomlTable, path: Path) -> StudyTask:
         )
     if task.scenario.endswith(".toml"):
         task = replace(task, scenario=str(path.parent / task.scenario))
-    check_scenario(task.scenario)
+    try:
+        check_scenario(task.scenario)
+    except AppError as error:
+        raise row.wrong("scenario", str(error)) from None
     return task
 
 
@@ -216,8 +229,8 @@ def _check_whole(protocol: Protocol, file: TomlTable) -> None:
             raise file.wrong("phase", f"{phase.name!r} has a part twice")
     for task in protocol.tasks.values():
         _check_names(file, f"task {task.name!r}", task.then, list(protocol.questionnaires))
-        for settings in protocol.conditions.values() or (Settings(),):
-            _check_goal(file, task, settings)
+        for name, settings in protocol.conditions.items() or (("", Settings()),):
+            _check_goal(file, task, name, settings)
     for each in protocol.stimuli.values():
         asked = dict.fromkeys(each.ask.format_map(stimulus) for stimulus in each.stimuli)
         _check_names(file, f"stimuli {each.name!r}", tuple(asked), list(protocol.questionnaires))
@@ -233,20 +246,24 @@ def _check_names(file: TomlTable, place: str, names: tuple[str, ...], known: lis
             )
 
 
-def _check_goal(file: TomlTable, task: StudyTask, settings: Settings) -> None:
+def _check_goal(file: TomlTable, task: StudyTask, condition: str, settings: Settings) -> None:
     """Refuse a goal that a scenario never reaches, whatever the participant does."""
     scenario, goal = find_scenario(task.scenario), task.goal
     reachable: tuple[str, ...] | None = None
     if goal.value == "mood":
         own = settings.personality or scenario.personality
-        reachable = tuple(Personality.load(own).label_set.places)
+        try:
+            reachable = tuple(Personality.load(own).label_set.places)
+        except AffectError as error:
+            raise file.wrong("condition", f"{condition!r}: {error}") from None
     elif goal.value == "action" and scenario.roles:
         reachable = scenario.roles
     elif goal.value == "face":
         reachable = tuple(face.side for face in CubeModel.load(scenario.cube).faces)
     if reachable is not None and goal.equals not in reachable:
+        under = f" under the condition {condition!r}" if condition else ""
         raise file.wrong(
             "task",
-            f"the goal of {task.name!r} cannot be reached in {task.scenario}: its {goal.value} "
-            f"is one of {', '.join(dict.fromkeys(reachable))}, never {goal.equals!r}",
+            f"the goal of {task.name!r} cannot be reached in {task.scenario}{under}: its "
+            f"{goal.value} is one of {', '.join(dict.fromkeys(reachable))}, never {goal.equals!r}",
         )
