@@ -84,6 +84,7 @@ name = "p"
 parts = ["Play with Vleo", "after"]
 [[task]]
 name = "Play with Vleo"
+title = "Play with Vleo"
 text = "Turn the cube until Vleo throws kisses. Touch the tick when you have seen enough."
 scenario = "companion"
 goal = { value = "mood", equals = "happy" }
