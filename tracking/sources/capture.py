@@ -53,17 +53,22 @@ class _DeviceReader:
 class CaptureThread:
     """Reads a device in a thread and keeps the newest image, or the newest ones.
 
-    The thread reopens the device after a loss if an image ever arrived. The same image again and
+    The thread reopens the device `retry_delay` [s] after a loss if an image ever arrived. The same image again and
     again for `frozen_after` [s] is a loss, too. If the driver does not
     return for `STUCK_TIMEOUT_S`, another thread takes over; if the first one ever returns, it
     closes its device and ends.
     """
 
     def __init__(
-        self, connect: Callable[[], Device], name: str, clock: Clock, frozen_after: float
+        self,
+        connect: Callable[[], Device],
+        name: str,
+        clock: Clock,
+        frozen_after: float,
+        retry_delay: float = RETRY_DELAY_S,
     ) -> None:
         self._connect, self._name, self._clock = connect, name, clock
-        self._frozen_after = frozen_after
+        self._frozen_after, self._retry_delay = frozen_after, retry_delay
         self._changed = threading.Condition()
         self._stopped = threading.Event()
         self._waiting: deque[CapturedImage] = deque(maxlen=1)
@@ -183,7 +188,7 @@ class CaptureThread:
                 return  # the caller gets the error and may try another device
             began = self._clock()
             # In short waits on the given clock, which tests advance faster than the system's.
-            while not self._stopped.wait(POLL_S) and self._clock() - began < RETRY_DELAY_S:
+            while not self._stopped.wait(POLL_S) and self._clock() - began < self._retry_delay:
                 pass
 
     def _set_open(self, reader: _DeviceReader, device: Device) -> None:

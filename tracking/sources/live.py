@@ -14,6 +14,7 @@ from cubeling.tracking.sources.capture import (
     FIRST_IMAGE_TIMEOUT_S,
     OPEN_TIMEOUT_S,
     POLL_S,
+    RETRY_DELAY_S,
     SILENCE_S,
     CaptureThread,
 )
@@ -44,7 +45,8 @@ class LiveSource(FrameSource):
     driver that blocks does not block the caller; it is called again after each loss:
     `base.LiveFrames` describes what the caller sees. Identical images for `frozen_after` [s] count
     as a loss, and so do images that cannot be used for `SILENCE_S`, as they are broken or have
-    another size than the first one. Messages give the source's `name`: "camera 0".
+    another size than the first one. After a loss, it is opened again after `retry_delay` [s].
+    Messages give the source's `name`: "camera 0".
 
     Raises
     ------
@@ -63,6 +65,7 @@ class LiveSource(FrameSource):
         clock: Clock = time.monotonic,
         *,
         frozen_after: float = SILENCE_S,
+        retry_delay: float = RETRY_DELAY_S,
     ) -> None:
         self._name = name
         self._clock = clock
@@ -74,7 +77,7 @@ class LiveSource(FrameSource):
         self._unusable_since: float | None = None
         self._unusable_text = ""
         self._latencies: deque[float] = deque(maxlen=RECENT_IMAGES)
-        self._capture = CaptureThread(connect, name, clock, frozen_after)
+        self._capture = CaptureThread(connect, name, clock, frozen_after, retry_delay)
         try:
             self._first: Frame | None = self._wait_for_first()
         except BaseException:

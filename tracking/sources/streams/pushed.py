@@ -104,7 +104,8 @@ class PushedSource(LiveSource):
     """
 
     def __init__(self, feed: ImageFeed, name: str, clock: Clock = time.monotonic) -> None:
-        super().__init__(lambda: _FeedReader(feed), name, clock)
+        # A feed needs no time to be opened again, and pictures that come meanwhile would be lost.
+        super().__init__(lambda: _FeedReader(feed), name, clock, retry_delay=0.0)
 
 
 class _FeedReader:

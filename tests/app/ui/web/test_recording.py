@@ -114,3 +114,24 @@ def test_what_is_drawn_is_cut_out_of_the_cameras_picture():
     assert (cut[0:5, :, 3] == 0).all()
     assert (cut[12:14, :, :3] == 0).all(), "a shadow is black"
     assert np.abs(cut[12:14, :, 3].astype(int) - 128).max() <= 2, "and lets half through"
+
+
+def test_a_feed_that_was_silent_is_read_on_at_once():
+    now, jpegs = [50.0], [
+        cv2.imencode(".jpg", np.full((48, 64, 3), value, np.uint8))[1].tobytes() for value in (7, 90)
+    ]  # fmt: skip
+    feed = ImageFeed()
+    timer = threading.Timer(0.2, lambda: feed.push(jpegs[0], time.monotonic()))
+    timer.start()
+    with closing(PushedSource(feed, "phone", lambda: now[0])) as source:
+        assert source.wait(0.0) is not None
+        now[0] += 1.0
+        end = time.monotonic() + 20.0
+        while source._capture.state == "running" or source._capture.opening:
+            assert time.monotonic() < end, "no time passes: nothing may wait for it"
+            time.sleep(0.005)
+        feed.push(jpegs[1], time.monotonic())
+        while (frame := source.wait(0.0)) is None:
+            assert time.monotonic() < end
+        assert frame.encoded == jpegs[1]
+    timer.join()
