@@ -53,10 +53,10 @@ class _DeviceReader:
 class CaptureThread:
     """Reads a device in a thread and keeps the newest image, or the newest ones.
 
-    The thread reopens the device `retry_delay` [s] after a loss if an image ever arrived. The same image again and
-    again for `frozen_after` [s] is a loss, too. If the driver does not
-    return for `STUCK_TIMEOUT_S`, another thread takes over; if the first one ever returns, it
-    closes its device and ends.
+    The thread reopens the device `retry_delay` [s] after a loss if an image ever arrived. The same
+    image again and again for `frozen_after` [s] is a loss, too. If the driver does not return for
+    `STUCK_TIMEOUT_S`, another thread takes over; if the first one ever returns, it closes its
+    device and ends.
     """
 
     def __init__(
