@@ -21,7 +21,7 @@ from cubeling.app.pipeline.table.situation import table_from_cube
 from cubeling.app.running.instrument import Instrument
 from cubeling.app.running.wizard.plan import WizardPlan, emotion_of
 from cubeling.app.session.acts import act_words
-from cubeling.app.ui.web.page import document
+from cubeling.app.ui.web.page import Documents, document
 from cubeling.app.ui.web.server import WebServer
 from cubeling.characters import Character, CharacterError
 from cubeling.characters.speech import TaggedText
@@ -64,6 +64,11 @@ class DeskRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The act that was an error."""
 
 
+def desk_page() -> Documents:
+    """Return the page, in each language."""
+    return document("desk.html", ["base.css", "desk.css"], ["base.js", "desk.js"], ["desk"])
+
+
 class WizardDesk(Instrument):
     """A page by which an experimenter drives character and robot; an `Instrument`.
 
@@ -95,8 +100,7 @@ class WizardDesk(Instrument):
         self._followed = -math.inf
         self._clear()
         token = Token.generate()
-        desk = document("desk.html", ["base.css", "desk.css"], ["base.js", "desk.js"])
-        server.open(DESK_PATH, self, token, desk)
+        server.open(DESK_PATH, self, token, desk_page())
         self.addresses = server.addresses(DESK_PATH, token)
         """Where the wizard's browser finds the page: here, and in the network if that is let in."""
 

@@ -71,12 +71,12 @@ class WizardPlan:
         """Return the groups of buttons for a character, as the page takes them."""
         words = USUAL_EMOTIONS if self.emotions is None else self.emotions
         groups = (
-            ("say", "Say", USUAL_TEXTS if self.say is None else self.say),
-            ("action", "Actions", _or(self.actions, lambda: Animator(character).actions)),
-            ("gesture", "Gestures", _or(self.gestures, lambda: known_gestures(character))),
-            ("emotion", "Emotions", tuple(word for word in words if word in WORD_PLACES)),
+            ("say", USUAL_TEXTS if self.say is None else self.say),
+            ("action", _or(self.actions, lambda: Animator(character).actions)),
+            ("gesture", _or(self.gestures, lambda: known_gestures(character))),
+            ("emotion", tuple(word for word in words if word in WORD_PLACES)),
         )
-        return [{"kind": kind, "title": title, "names": names} for kind, title, names in groups]
+        return [{"kind": kind, "names": names} for kind, names in groups]
 
     def robot_buttons(self, robot: RobotView | None) -> tuple[str, ...]:
         """Return what the robot can play; () as long as nobody knows."""

@@ -11,6 +11,7 @@ from aiohttp import WSMsgType, web
 
 from cubeling.app.errors import AppError
 from cubeling.app.ui.web.fineness import FinenessControl
+from cubeling.app.ui.web.language import localized
 from cubeling.app.ui.web.limits import RateLimit, WebLimits
 from cubeling.app.ui.web.messages import PICTURE, Role, Said, pack, read_said, unpack
 
@@ -21,8 +22,11 @@ LAST_WORDS_S = 1.0
 """Time for the message that says why a page is disconnected [s]."""
 
 
+CARDS = "cards "
+"""Begins the kind of a picture with cards: the language of the hint follows."""
+
 Look = tuple[str, int]
-"""How a picture is wanted: its kind, "cards", "plain" or "cutout", and place in `FINENESSES`."""
+"""How a picture is wanted: its kind, "cards en", "plain" or "cutout", and place in `FINENESSES`."""
 
 
 class ShownPicture(Protocol):
@@ -56,6 +60,7 @@ class PageClient:
         attempt: int,
         role: Role,
         kind: str,
+        language: str,
         limits: WebLimits,
         clock: Callable[[], float],
     ) -> None:
@@ -64,7 +69,7 @@ class PageClient:
         """Which connection of the page this is: a later one has a larger number."""
         self.heard = clock()
         """When it said something last [s]."""
-        self._kind, self._fineness = kind, FinenessControl()
+        self._kind, self._language, self._fineness = kind, language, FinenessControl()
         self._socket, self._limits, self._clock = socket, limits, clock
         self._messages = RateLimit(limits.messages_per_s, limits.messages_burst_s)
         self._bytes = RateLimit(limits.bytes_per_s)
@@ -81,8 +86,8 @@ class PageClient:
         return None if self.role == "camera" else (self._kind, self._fineness.level)
 
     def tell(self, **message: object) -> None:
-        """Send a message in JSON."""
-        self._texts.append(msgspec.json.encode(message).decode())
+        """Send a message in JSON; what is `English` in it is sent in the page's language."""
+        self._texts.append(msgspec.json.encode(localized(message, self._language)).decode())
         self._waiting.set()
 
     def show(self, picture: ShownPicture) -> None:

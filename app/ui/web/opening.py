@@ -17,6 +17,7 @@ from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.playback.scenario_card import scenario_picture, summary_of
 from cubeling.app.ui.web.acceptor import Listener
 from cubeling.app.ui.web.camera import PageCameras
+from cubeling.app.ui.web.language import English
 from cubeling.app.ui.web.messages import TILE, pack
 from cubeling.app.ui.web.page import page
 from cubeling.app.ui.web.picture import encoded
@@ -44,7 +45,10 @@ def open_server(
         listeners.append(Listener(host, port, tls))
     names = scenario_names()
     welcome = {
-        "scenarios": [{"name": each, "summary": summary_of(each)} for each in names],
+        "scenarios": [
+            {"name": each, "title": English(each), "summary": English(summary_of(each))}
+            for each in names
+        ],
         "rate": SAMPLE_RATE,
         "camera": camera,
     }

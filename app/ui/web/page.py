@@ -2,22 +2,26 @@
 
 import base64
 import hashlib
+import json
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib import resources
+from typing import Any
+
+from cubeling.app.ui.web.language import LANGUAGES, PAGE_FOLDER
+from cubeling.toml_file import bundled
 
 HTML = "text/html; charset=utf-8"
 
 MAX_PAGE_BYTES = 30_000
 """Size of a page [B]: it is there at once on any network."""
 
-SCRIPT_FILES = ("base.js", "words.js", "link.js", "picture.js", "camera.js", "sound.js", "touch.js")
-"""The parts of the script of the page that plays, in their order."""
-
-FOR_PEOPLE = re.compile(r"^\s+|^(//.*|/\*.*\*/)\n", re.MULTILINE)
+FOR_PEOPLE = re.compile(r"^\s+|^(//.*|/\*[^*]*\*/)\n", re.MULTILINE)
 """What a browser does not need: indents, and lines that are comments."""
+
+PLACED = re.compile(r"\{\{(\w+)(?:: ([\w ]+))?\}\}")
+"""Where HTML has a word of the page's language, or icons: {{picture}}, {{icons: go again}}."""
 
 
 @dataclass(frozen=True)
@@ -31,13 +35,38 @@ class Document:
     """Of HTTP: it runs its own script only, and nothing frames it."""
 
 
-def document(name: str, styles: Iterable[str], scripts: Iterable[str]) -> Document:
-    """Return a document made of files of the folder `page`.
+Documents = Mapping[str, Document]
+"""A page in each of `LANGUAGES`, by its code."""
+
+
+def document(
+    name: str, styles: Iterable[str], scripts: Iterable[str], words: Iterable[str] = ()
+) -> Documents:
+    """Return a document made of files of the folder `page`, in each language.
 
     In the HTML file `name`, the styles go where it says /*STYLE*/, the scripts where /*SCRIPT*/.
+    `words` are tables of `words.toml`: the script has them as `T`, and the HTML places them.
     """
-    style, script = _joined(styles), _joined(scripts)
-    html = _joined([name]).replace("/*STYLE*/", style).replace("/*SCRIPT*/", script)
+    html, style, script = _joined([name]), _joined(styles), _joined(scripts)
+    tables = bundled(PAGE_FOLDER / "words.toml")
+    known = {key: word for table in words for key, word in tables[table].items()}
+    return {
+        language: _document(
+            html, style, script, language, {key: each[language] for key, each in known.items()}
+        )
+        for language in LANGUAGES
+    }
+
+
+def _document(html: str, style: str, script: str, language: str, words: dict[str, Any]) -> Document:
+    def place(found: re.Match[str]) -> str:
+        if found[1] == "icons":
+            return _icons(found[2].split())
+        return language if found[1] == "language" else str(words[found[1]])
+
+    said = json.dumps(words, ensure_ascii=False, separators=(",", ":"))
+    script = f'"use strict";\nconst LANGUAGE = "{language}", T = {said};\n{script}'
+    html = PLACED.sub(place, html).replace("/*STYLE*/", style).replace("/*SCRIPT*/", script)
     policy = (
         "default-src 'none'; connect-src 'self'; img-src blob: data:; media-src blob:; "
         f"style-src {_hash(style)}; script-src {_hash(script)}; "
@@ -55,17 +84,38 @@ def document(name: str, styles: Iterable[str], scripts: Iterable[str]) -> Docume
 
 
 @lru_cache(maxsize=2)
-def page(*, study: bool = False) -> Document:
-    """Return the page that plays; with a study, also that on which its questions are."""
-    if not study:
-        return document("page.html", ["base.css", "page.css"], SCRIPT_FILES)
-    styles = ["base.css", "page.css", "study.css"]
-    return document("page.html", styles, [*SCRIPT_FILES, "study.js"])
+def page(*, study: bool = False) -> Documents:
+    """Return the page that plays; in a study, the one that asks, and on which tasks are played."""
+    own = "study" if study else "play"
+    return document(
+        f"{own}.html",
+        ["base.css", "picture.css", "page.css", f"{own}.css"],
+        ["base.js", "link.js", "picture.js", "sound.js", "camera.js", "touch.js", f"{own}.js"],
+        ["view", "page", own],
+    )
+
+
+@lru_cache(maxsize=1)
+def view_page() -> Documents:
+    """Return the page that only shows the picture, as for OBS or a projector."""
+    scripts = ["base.js", "link.js", "picture.js", "sound.js", "view.js"]
+    return document("view.html", ["base.css", "picture.css"], scripts, ["view"])
+
+
+def _read(name: str) -> str:
+    return (PAGE_FOLDER / name).read_text("utf-8")
 
 
 def _joined(names: Iterable[str]) -> str:
-    folder = resources.files("cubeling.app.ui.web") / "page"
-    return FOR_PEOPLE.sub("", "".join((folder / each).read_text("utf-8") for each in names))
+    return FOR_PEOPLE.sub("", "".join(map(_read, names)))
+
+
+def _icons(names: Iterable[str]) -> str:
+    """Return the lines of the named icons, in their order: one may use one that is above it."""
+    found = {
+        line.partition('"')[2].partition('"')[0]: line for line in _read("icons.svg").splitlines()
+    }
+    return "\n".join(found[f"i-{name}"] for name in names)
 
 
 def _hash(text: str) -> str:

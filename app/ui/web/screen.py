@@ -22,6 +22,8 @@ from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import Choose, MarkMoment, Record, SessionRequest
 from cubeling.app.ui.playback.snapshot import keep_snapshot
 from cubeling.app.ui.playback.status import SessionStatus
+from cubeling.app.ui.web.client import CARDS
+from cubeling.app.ui.web.language import LANGUAGES, English, in_language
 from cubeling.app.ui.web.messages import Said
 from cubeling.app.ui.web.picture import PagePicture, Picture, PictureEncoder, cut_out
 from cubeling.app.ui.web.server import WebServer
@@ -147,8 +149,10 @@ class WebScreen:
         step, robot = self._shown
         assert step.picture is not None
         pictures: dict[str, Picture] = {}
-        if "cards" in wanted:
-            pictures["cards"] = self._with_cards(step, robot)
+        for language in (each for each in LANGUAGES if f"{CARDS}{each}" in wanted):
+            hint = in_language(step.outcome.hint, language).words
+            told = replace(step, outcome=replace(step.outcome, hint=hint))
+            pictures[f"{CARDS}{language}"] = self._with_cards(told, robot)
         if "plain" in wanted:
             pictures["plain"] = self._seen(step.picture)
         if "cutout" in wanted:
@@ -172,9 +176,10 @@ class WebScreen:
         told: dict[str, object] = {
             "scenario": status.scenario,
             "recording": status.recording,
-            "notice": None if notice is None else [notice.title, notice.advice],
+            "title": English(status.scenario),
+            "notice": None if notice is None else [English(notice.title), English(notice.advice)],
             "offer": self._offer,
-            "hint": "" if self._shown is None else self._shown[0].outcome.hint,
+            "hint": English("" if self._shown is None else self._shown[0].outcome.hint),
         }
         recording = status.recording is not None
         known = {**told, "recording": recording} == {

@@ -17,10 +17,11 @@ from aiohttp import web
 from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
 from cubeling.app.ui.web.acceptor import Acceptor, Listener
-from cubeling.app.ui.web.client import LAST_WORDS_S, Look, PageClient, ShownPicture
+from cubeling.app.ui.web.client import CARDS, LAST_WORDS_S, Look, PageClient, ShownPicture
+from cubeling.app.ui.web.language import LANGUAGES, English, language_of
 from cubeling.app.ui.web.limits import WebLimits
 from cubeling.app.ui.web.messages import PLAYER_ROLES, Role, Said
-from cubeling.app.ui.web.page import Document, page
+from cubeling.app.ui.web.page import Documents, page, view_page
 from cubeling.app.ui.web.place import CameraPlace
 from cubeling.tracking import ImageFeed
 
@@ -33,8 +34,8 @@ SOCKET_PATH, PROTOCOL = "/socket", "cubeling"
 TOKEN_PATH = "/token"
 """Where a page that gets no WebSocket asks why: 403 for a wrong token, 503 without room."""
 
-PAGE_PATHS = ("/", "/view", "/window", "/camera")
-"""One page, which looks at its address."""
+PAGE_PATHS, VIEW_PATH = ("/", "/window", "/camera"), "/view"
+"""One page, which looks at its address, and the one that only shows the picture."""
 
 MAX_SENT_BYTES = 65_536
 """Size of what a page posts [B]."""
@@ -106,7 +107,7 @@ class WebServer:
         limits: WebLimits | None = None,
         clock: Callable[[], float] = time.monotonic,
         *,
-        main: Document | None = None,
+        main: Documents | None = None,
     ) -> None:
         self.feed = ImageFeed()
         """The pictures of the camera."""
@@ -116,9 +117,9 @@ class WebServer:
         """The scenarios' pictures, as messages."""
         self._token, self._limits, self._clock = token, limits or WebLimits(), clock
         self._welcome = dict(welcome or {})
-        self._documents = dict.fromkeys(PAGE_PATHS, main or page())
+        self._documents = {VIEW_PATH: view_page(), **dict.fromkeys(PAGE_PATHS, main or page())}
         self._opened: dict[str, _Opened] = {}
-        self._kept: dict[str, dict[str, object]] = {"status": {}}
+        self._kept: dict[str, dict[str, object]] = {}
         self._requests: queue.Queue[Said] = queue.Queue(MAX_REQUESTS)
         self._clients: dict[str, PageClient] = {}
         self._place = CameraPlace(clock)
@@ -150,7 +151,7 @@ class WebServer:
         path: str,
         content: WebContent,
         token: Token | None = None,
-        document: Document | None = None,
+        document: Documents | None = None,
     ) -> None:
         """Serve content below a path, as "/desk", to who tells its token.
 
@@ -212,8 +213,8 @@ class WebServer:
         self._tell_all(lambda client: client.tell(do=do, **content))
 
     def say(self, words: str) -> None:
-        """Show some words on all pages for some seconds."""
-        self._tell_all(lambda client: client.tell(do="words", words=words))
+        """Show some words in English on all pages for some seconds, in the language of each."""
+        self._tell_all(lambda client: client.tell(do="words", said=English(words)))
 
     def close(self) -> None:
         """Disconnect all; a second call does nothing."""
@@ -259,15 +260,18 @@ class WebServer:
                 client.leave("nothing was heard of this page")
 
     async def _answer(self, request: web.BaseRequest) -> web.StreamResponse:
-        document = self._documents.get(request.path)
-        if request.method == "GET" and document is not None:
-            return web.Response(body=document.body, headers=document.headers)
+        documents = self._documents.get(request.path)
+        if request.method == "GET" and documents is not None:
+            found = documents[language_of(request.headers.get("Accept-Language", ""))]
+            return web.Response(body=found.body, headers=found.headers)
         if request.method == "GET" and request.path == SOCKET_PATH:
             return await self._welcome_page(request)
         if request.path == TOKEN_PATH:
             if not self._tells(request, self._token):
                 return web.Response(status=403, text=REFUSED)
-            return web.Response(status=503 if self._has_no_room(request) else 204)
+            answer = web.Response(status=503 if self._has_no_room(request) else 204)
+            answer.force_close()  # a page asks this by new connections: an old one may be dead
+            return answer
         root, _, place = request.path[1:].partition("/")
         opened = self._opened.get(f"/{root}")
         if opened is None:
@@ -330,9 +334,19 @@ class WebServer:
         await opened.prepare(request)
         self._acceptor.admit(request.protocol)
         cutout = request.query.get("background") == "none"
-        kind = "cards" if role in PLAYER_ROLES else "cutout" if cutout else "plain"
+        language = request.query.get("language", "")
+        language = language if language in LANGUAGES else LANGUAGES[0]
+        bare = "cutout" if cutout else "plain"
+        kind = f"{CARDS}{language}" if role in PLAYER_ROLES else bare
         client = PageClient(
-            opened, name, int(attempt), cast(Role, role), kind, self._limits, self._clock
+            opened,
+            name,
+            int(attempt),
+            cast(Role, role),
+            kind,
+            language,
+            self._limits,
+            self._clock,
         )
         await self._exchange(client)
         return opened

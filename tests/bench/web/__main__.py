@@ -13,6 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from cubeling.app.ui.web.page import MAX_PAGE_BYTES
 from tests.bench.web.camera import write_camera
 from tests.bench.web.chromium import chromium
 from tests.bench.web.faulty_proxy import FaultyProxy
@@ -21,6 +22,7 @@ from tests.bench.web.guide_picture import picture
 from tests.bench.web.hostile import hostile
 from tests.bench.web.playing import LOOP_S, RATE, median_95, play, sampled
 from tests.bench.web.serving import line_times_ms, say, serving
+from tests.bench.web.sizes import sizes
 
 
 async def start(folder: Path) -> None:
@@ -85,6 +87,12 @@ async def firefox(folder: Path) -> None:
     say(f"{name} connects, and shows pictures of {shown}, late by {late} in the median")
 
 
+async def size(_: Path) -> None:
+    """Print what a browser loads of the page of each role."""
+    for role, found in sizes().items():
+        say(f"{role:>7}: {found / 1000:.1f} kB (bar: {MAX_PAGE_BYTES / 1000:.0f} kB)")
+
+
 SETTLE_S = 6.0
 """Time in which pictures become as fine as a line carries [s]."""
 
@@ -93,6 +101,7 @@ SCENES: dict[str, Callable[[Path], Coroutine[Any, Any, None]]] = {
     "hostile": hostile,
     "line": line,
     "firefox": firefox,
+    "size": size,
     "picture": picture,
 }
 """The scenes by name; the picture is drawn only when it is named."""

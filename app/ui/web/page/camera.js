@@ -12,13 +12,16 @@ let place = "", taking = false; // "yours", "other", "free"; "" until the server
 const hasCamera = () => welcome?.camera && (role === "play" || role === "camera");
 const live = () => stream?.getVideoTracks()[0]?.readyState === "live";
 
-function placed(whose) {
-  place = whose;
+HEARD.place = ({camera}) => {
+  place = camera;
   if (place === "yours") taking = false;
-  else $("delay").textContent = "";
-  showRole();
+  show();
   followPlace();
-}
+};
+HEARD.cut = () => {
+  inFlight.clear();
+  place = "";
+};
 
 /* Open the camera if this page's is wanted, and close it if another one's is. */
 function followPlace() {
@@ -75,10 +78,10 @@ function turnCamera() {
 
 /* Coarser pictures, where a line carries no more: many find two of them still on their way. */
 let level = 0, seen = 0, late = 0, arrived = 0, counted = now(), fine = now();
-function acknowledged(id) {
+HEARD.got = ({id}) => {
   inFlight.delete(id);
   arrived++;
-}
+};
 
 function judge() {
   if (now() - counted < 1) return;
@@ -133,7 +136,7 @@ function send(jpeg, taken) {
 const awake = () => navigator.wakeLock?.request("screen").catch(() => { });
 document.addEventListener("visibilitychange", () => {
   if (document.hidden || !playing) return;
-  tried = heard = Math.min(heard, now() - SILENT_S / 2);
+  check();
   if (live()) video.play().catch(() => { });
   followPlace();
   awake();

@@ -14,15 +14,16 @@ function push(text, request) {
   return make("button", text, { onclick: () => act(request) });
 }
 
-function words(name) {
-  return name === name.toUpperCase() ? name.toLowerCase().replaceAll("_", " ") : name;
+function words(name = "") {
+  return T.words[name] || (name === name.toUpperCase() ? name.toLowerCase().replaceAll("_", " ") : name);
 }
 
-function group(kind, title, names) {
+function group(kind, names) {
+  const title = T[kind];
   const box = make("div", "", { className: "group" }), row = make("div", "", { className: "row" });
   box.append(make("h2", title));
   if (kind === "say") {
-    const field = make("input", "", { placeholder: "Say something else: Enter says it", maxLength: 500 });
+    const field = make("input", "", { placeholder: T.free, ariaLabel: T.free, maxLength: 500 });
     field.onkeydown = event => {
       if (event.key === "Enter" && field.value.trim()) {
         act({ do: "say", name: field.value.trim() });
@@ -31,7 +32,7 @@ function group(kind, title, names) {
     };
     box.append(field);
   } else if (names.length > 24) {
-    const field = make("input", "", { placeholder: "Search " + title.toLowerCase() });
+    const field = make("input", "", { placeholder: `${T.search}: ${title.toLowerCase()}`, ariaLabel: `${T.search}: ${title.toLowerCase()}` });
     field.oninput = () => {
       for (const each of row.children)
         each.hidden = !each.textContent.toLowerCase().includes(field.value.toLowerCase());
@@ -42,8 +43,8 @@ function group(kind, title, names) {
     const label = kind === "say" && at < 9 ? `${at + 1}  ${name}` : words(name);
     row.append(push(label, { do: kind, name }));
   });
-  if (kind === "emotion") row.append(push("as the scenario wants", { do: "emotion" }));
-  if (kind === "action") row.append(push("end it", { do: "action", name: "idle" }));
+  if (kind === "emotion") row.append(push(T.scenarios, { do: "emotion" }));
+  if (kind === "action") row.append(push(T.end, { do: "action", name: "idle" }));
   box.append(row);
   return box;
 }
@@ -52,10 +53,10 @@ function build() {
   const now = JSON.stringify([state.groups, state.robot, state.cues, state.places]);
   if (now === built) return;
   built = now;
-  const robot = { kind: "play", title: "Robot", names: state.robot || [] };
+  const robot = { kind: "play", names: state.robot || [] };
   const shown = [...state.groups, robot].filter(each => each.names.length || each.kind === "say");
-  $("buttons").replaceChildren(...shown.map(each => group(each.kind, each.title, each.names)));
-  $("cues").replaceChildren(...state.cues.map(name => push("Cue: " + name, { do: "cue", name })));
+  $("buttons").replaceChildren(...shown.map(each => group(each.kind, each.names)));
+  $("cues").replaceChildren(...state.cues.map(name => push(`${T.cue}: ${name}`, { do: "cue", name })));
   $("places").replaceChildren(...state.places.map(([name, x, z]) => {
     const mark = document.createElementNS("http://www.w3.org/2000/svg", "g");
     mark.innerHTML = '<circle r="1"></circle><text y="-1.6"></text>';
@@ -77,21 +78,21 @@ function put(id, place) {
 function show(found) {
   state = found;
   build();
-  const says = state.says ? ` · says “${state.says}”` : "";
+  const says = state.says ? ` · ${T.says} “${state.says}”` : "";
   $("doing").textContent = state.playing
-    ? `${state.scenario} · ${state.activity} · ${state.emotion}${says}` : "Nothing is played now";
-  $("problem").textContent = state.problem;
-  $("cue").textContent = state.cue ? `${state.cue[0]}: ${state.cue[1].toFixed(1)} s ago` : "";
+    ? `${words(state.scenario)} · ${words(state.activity)} · ${words(state.emotion)}${says}` : T.nothing;
+  $("problem").textContent = words(state.problem);
+  $("cue").textContent = state.cue ? `${state.cue[0]}: ${state.cue[1].toFixed(1)} ${T.ago}` : "";
   put("figure", state.character);
   put("cubemark", state.cube);
   $("acts").replaceChildren(...[...state.acts].reverse().map(done => {
     const line = make("li", "", { className: done.undone ? "undone" : "" });
     const what = make("span", "", { className: "what" });
-    what.append(make("span", done.kind + " ", { className: done.kind === "cue" ? "cue" : "kind" }), words(done.name));
+    what.append(make("span", `${T.kinds[done.kind] || done.kind} `, { className: done.kind === "cue" ? "cue" : "kind" }), words(done.name));
     line.append(what);
     if (done.delay_s !== null)
       line.append(make("span", `+${done.delay_s.toFixed(2)} s`, { className: "delay", title: done.cue }));
-    if (!done.undone) line.append(push("error", { do: "undo", number: done.number }));
+    if (!done.undone) line.append(push(T.error, { do: "undo", number: done.number }));
     return line;
   }));
 }
@@ -122,9 +123,9 @@ async function follow() {
   try {
     const answer = await ask("/desk/state");
     if (answer.ok) show(await answer.json());
-    else $("doing").textContent = "This link no longer opens the desk: the program prints the new one";
+    else $("doing").textContent = T.closed;
   } catch {
-    $("doing").textContent = "The program has ended";
+    $("doing").textContent = T.ended;
   }
   setTimeout(follow, STATE_MS);
 }

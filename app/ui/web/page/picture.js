@@ -1,22 +1,20 @@
 /* Pictures down: the newest is drawn, and the server is told so. */
 const PICTURE = 1, SOUND = 2, TILE = 3, HEAD_BYTES = 16;
-const tiles = {}, delays = [];
+const clear = query.get("background") === "none";
 let shown = 0;
+document.body.classList.toggle("clear", clear);
 
 async function received(data) {
   const head = new DataView(data), kind = head.getUint8(0), id = head.getUint32(4, true);
   const taken = head.getFloat64(8, true), body = data.slice(HEAD_BYTES);
   if (kind === SOUND) return hear(body);
-  if (kind === TILE) {
-    tiles[id] = URL.createObjectURL(new Blob([body], {type: "image/jpeg"}));
-    return listGames();
-  }
+  if (kind === TILE) return told({do: "tile", id, body});
   let bitmap;
   try { bitmap = await createImageBitmap(new Blob([body])); } catch { }
   if (bitmap) {
     draw(bitmap);
     shown = id;
-    if (taken && taken < now()) showDelay(now() - taken); // else before the page was loaded again
+    told({do: "pictured", taken});
     window.onpicture?.(id, taken);
   }
   say({do: "shown", id});
@@ -28,11 +26,4 @@ function draw(bitmap) {
   if (clear) context.clearRect(0, 0, canvas.width, canvas.height);
   context.drawImage(bitmap, 0, 0);
   bitmap.close();
-}
-
-function showDelay(seconds) {
-  delays.push(seconds);
-  if (delays.length > 31) delays.shift();
-  const median = [...delays].sort((a, b) => a - b)[delays.length >> 1];
-  $("delay").textContent = `${Math.round(1000 * median)} ms`;
 }

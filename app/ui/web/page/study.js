@@ -1,20 +1,23 @@
 /* A study: sheets to read and to answer lie over the picture, and tasks are played between them. */
-const sheet = document.createElement("section"), loaded = [];
+const sheet = $("sheet"), loaded = [];
 let asked = {};
-sheet.id = "sheet";
-sheet.hidden = true;
-document.querySelector("main").append(sheet);
-const done = button("done", T.done, () => say({do: "done"}), $("bar"));
+addButtons({turn: turnCamera, sound: toggleSound, done: () => say({do: "done"})});
+bar.sound.setAttribute("aria-pressed", true);
+const done = bar.done;
 
 HEARD.sheet = message => {
   over = Boolean(message.over);
   playing = !message.html;
   done.hidden = !message.ends;
   begin();
-  if (message.html === asked.html && message.number === asked.number) return; // connected again
+  if (JSON.stringify(message) === JSON.stringify(asked)) return; // connected again
   asked = message;
   sheet.hidden = playing;
   sheet.innerHTML = message.html;
+  sheet.lang = ""; // the study's own language
+  for (const [name, words] of Object.entries(message.words || {})) put(name, words);
+  sheet.querySelector("form button")?.setAttribute("aria-label", T.onward);
+  for (const each of sheet.querySelectorAll("figcaption")) each.textContent = T[each.textContent] || each.textContent;
   sheet.scrollTop = 0;
   loaded.splice(0).forEach(URL.revokeObjectURL);
   sheet.querySelectorAll("[data-from]").forEach(load);

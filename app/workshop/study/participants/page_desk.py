@@ -12,12 +12,13 @@ import cv2
 from cubeling.app.errors import AppError
 from cubeling.app.running.pages import awaited_camera, page_front_end
 from cubeling.app.session import SessionOptions
+from cubeling.app.ui.web.language import English
 from cubeling.app.ui.web.server import WebServer
 from cubeling.app.workshop.study.participants.live_task import LiveDesk, TaskSetup, play_task
 from cubeling.app.workshop.study.participants.question_sheet import (
+    WAITING_SHEET,
     question_sheet,
     text_sheet,
-    waiting_sheet,
 )
 from cubeling.app.workshop.study.participants.stimulus_files import (
     MEDIA_TYPES,
@@ -62,7 +63,7 @@ class PageDesk(LiveDesk):
         self._server, self._number = server, 0
         self._shown: tuple[Shown, ...] = ()
         server.open(SHOWN_PATH, self)
-        self._show(waiting_sheet("The study begins in a moment"))
+        self._wait("The study begins in a moment")
 
     def tell(self, title: str, text: str) -> None:
         """Show a text until the participant goes on."""
@@ -83,19 +84,22 @@ class PageDesk(LiveDesk):
                 for place, (file, caption) in enumerate(zip(files, captions_of(files), strict=True))
             ]
             points = [f"{at}/{len(files) + place}" for place in range(len(pictures))]
-            sheet = question_sheet(questionnaire, item, shown, points, problem)
+            sheet = question_sheet(questionnaire, item, shown, points, again=bool(problem))
             try:
-                return item.parse(self._wait_for(sheet, (*files, *pictures)))
+                return item.parse(self._wait_for(sheet, (*files, *pictures), problem))
             except AppError as error:
                 problem = str(error)
 
     def give_way(self) -> None:
         """Show the picture of the task; without one, where it is."""
-        self._show("" if self._setup.pictures else waiting_sheet("You play now"))
+        if self._setup.pictures:
+            self._show("")
+        else:
+            self._wait("You play now")
 
     def thank(self) -> None:
         """Show that all is done, for as long as a browser needs to be told."""
-        self._show(waiting_sheet("Thank you! You have finished."), over=True)
+        self._wait("Thank you! You have finished.", over=True)
         time.sleep(GOODBYE_S)
 
     def get(self, place: str) -> tuple[str, bytes] | None:
@@ -120,15 +124,19 @@ class PageDesk(LiveDesk):
             front_end = page_front_end(self._server, study=True) if options.pictures else None
             return play_task(found, task, self._setup.instruments, camera, front_end)
 
-    def _show(self, html: str, **more: bool) -> None:
+    def _show(self, html: str, **more: object) -> None:
         self._server.tell("sheet", number=self._number, html=html, **more)
 
-    def _wait_for(self, html: str, shown: tuple[Shown, ...] = ()) -> str:
+    def _wait(self, words: str, **more: object) -> None:
+        """Show why nothing is asked."""
+        self._show(WAITING_SHEET, words={"waiting": English(words)}, **more)
+
+    def _wait_for(self, html: str, shown: tuple[Shown, ...] = (), problem: str = "") -> str:
         """Show a sheet until it is answered; what answers an earlier one is left out."""
         self._number, self._shown = self._number + 1, shown
-        self._show(html)
+        self._show(html, words={"problem": English(problem)} if problem else {})
         while True:
             for said in self._server.take_requests(POLL_S):
                 if said.do == "answer" and said.id == self._number:
-                    self._show(waiting_sheet("One moment"))
+                    self._wait("One moment")
                     return said.name

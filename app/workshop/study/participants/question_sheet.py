@@ -9,9 +9,8 @@ MAX_TEXT_CHARS = 2000
 """Longest text that is answered: `WebLimits.text_bytes` holds it."""
 
 
-def waiting_sheet(words: str) -> str:
-    """Return what is shown while nothing is asked."""
-    return f"<h2>{escape(words)}</h2>"
+WAITING_SHEET = '<h2 id="waiting"></h2>'
+"""Shown while nothing is asked; the page writes into it what it is told of "waiting"."""
 
 
 def text_sheet(title: str, text: str) -> str:
@@ -24,7 +23,8 @@ def question_sheet(
     item: Item,
     shown: Sequence[tuple[str, str, str]] = (),
     pictures: Sequence[str] = (),
-    problem: str = "",
+    *,
+    again: bool = False,
 ) -> str:
     """Return the sheet of a question.
 
@@ -36,10 +36,10 @@ def question_sheet(
         Address, media type and caption of each stimulus, from left to right.
     pictures
         Address of a picture for each answer; none for words alone.
-    problem
-        Why the last answer was none; "" for no reason.
+    again
+        Whether the last answer was none: the page writes why, as it is told of "problem".
     """
-    warning = f'<p class="problem">{escape(problem)}</p>' if problem else ""
+    warning = '<p id="problem" role="alert"></p>' if again else ""
     figures = "".join(_figure(*each) for each in shown)
     seen = f'<div class="shown">{figures}</div>' if shown else ""
     asked = f"<h2>{escape(item.text)}</h2>" if item.text else ""
@@ -52,8 +52,9 @@ def _heading(title: str) -> str:
 
 
 def _form(body: str) -> str:
+    """Return a form with the button to go on, which the page gives a name in its language."""
     arrow = '<svg viewBox="0 0 24 24" aria-hidden="true"><use href="#i-go"/></svg>'
-    return f'<form>{body}<button aria-label="Go on">{arrow}</button></form>'
+    return f"<form>{body}<button>{arrow}</button></form>"
 
 
 def _figure(address: str, kind: str, caption: str) -> str:

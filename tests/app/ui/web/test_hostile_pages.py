@@ -27,7 +27,7 @@ def test_a_page_that_reads_nothing_holds_two_pictures_and_stalls_nobody():
                 seen.append(await slow.picture())
             assert seen[0] == 1
             assert len(seen) == 2
-            assert (await slow.told("words"))["words"] == "done"
+            assert (await slow.told("words"))["said"] == {"words": "done", "language": ""}
 
     serve(use)
 

@@ -117,9 +117,8 @@ def test_what_is_drawn_is_cut_out_of_the_cameras_picture():
 
 
 def test_a_feed_that_was_silent_is_read_on_at_once():
-    now, jpegs = [50.0], [
-        cv2.imencode(".jpg", np.full((48, 64, 3), value, np.uint8))[1].tobytes() for value in (7, 90)
-    ]  # fmt: skip
+    now, pictures = [50.0], [np.full((48, 64, 3), value, np.uint8) for value in (7, 90)]
+    jpegs = [cv2.imencode(".jpg", each)[1].tobytes() for each in pictures]
     feed = ImageFeed()
     timer = threading.Timer(0.2, lambda: feed.push(jpegs[0], time.monotonic()))
     timer.start()

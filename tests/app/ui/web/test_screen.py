@@ -141,5 +141,6 @@ def test_pages_are_told_that_nothing_has_changed_twice_a_second_only(desk):
     desk.now[0] += 0.6
     desk.screen.report(SessionStatus(scenario="follow", recording=1.5))
     assert desk.pages.statuses[-1] == {
-        "scenario": "follow", "recording": 1.5, "notice": None, "offer": "", "hint": "",
+        "scenario": "follow", "title": "follow", "recording": 1.5, "notice": None, "offer": "",
+        "hint": "",
     }  # fmt: skip

@@ -15,10 +15,12 @@ import pytest
 
 from cubeling.app.admission import Token
 from cubeling.app.ui.web.acceptor import Listener
+from cubeling.app.ui.web.language import English
 from cubeling.app.ui.web.messages import PICTURE, SOUND, pack, read_said, unpack
-from cubeling.app.ui.web.page import MAX_PAGE_BYTES, document, page
+from cubeling.app.ui.web.page import MAX_PAGE_BYTES, document
 from cubeling.app.ui.web.place import CAMERA_QUIET_S, CameraPlace
 from cubeling.app.ui.web.server import LOOPBACK, MAX_SENT_BYTES, WebServer
+from tests.bench.web.sizes import pages, sizes
 
 WAIT_S = 20.0
 TOKEN = Token("open-sesame")
@@ -33,7 +35,7 @@ class Drawn:
     size: int = 1000
 
     def data(self, look):
-        return bytes(self.size) if look[0] == "cards" else None
+        return bytes(self.size) if look[0] == "cards en" else None
 
     def taken(self, page):
         return 0.0
@@ -99,22 +101,15 @@ async def until(condition):
 
 
 def test_the_page_is_small_and_loads_nothing_from_elsewhere():
-    text = page().body.decode()
-    assert len(page().body) <= MAX_PAGE_BYTES
-    assert not re.search(r"(https?:)?//[a-z0-9]", text.replace("https:// or http://localhost", "")
-                         .replace("https:// o http://localhost", ""))  # fmt: skip
-    assert "default-src 'none'" in page().headers["Content-Security-Policy"]
-
-
-def test_every_word_of_the_page_is_there_in_both_languages():
-    text = page().body.decode()
-    english, spanish = text[text.index("en: {") :].split("es: {")[:2]
-    names = [
-        set(re.findall(r"(?:^|, )(\w+): [\[\"]", part.partition("about: {")[0], re.M))
-        for part in (english, spanish)
-    ]
-    assert names[0] == names[1]
-    assert len(names[0]) > 20
+    assert set(sizes()) == {"play", "window", "camera", "view", "study", "desk"}
+    assert max(sizes().values()) <= MAX_PAGE_BYTES
+    for found in (each for documents in pages().values() for each in documents.values()):
+        text = found.body.decode().replace("http://www.w3.org/2000/svg", "")
+        assert not re.search(
+            r"(https?:)?//[a-z0-9]", re.sub("https:// or? http://localhost", "", text)
+        )
+        assert "/*" not in text, "no comments"
+        assert "default-src 'none'" in found.headers["Content-Security-Policy"]
 
 
 def test_only_who_knows_the_token_is_let_in():
@@ -261,7 +256,9 @@ def test_what_is_opened_has_a_token_of_its_own():
     desk = Token("the-wizards-own")
 
     async def use(server):
-        server.open("/desk", Desk(), desk, document("desk.html", ["base.css"], ["base.js"]))
+        server.open(
+            "/desk", Desk(), desk, document("desk.html", ["base.css"], ["base.js"], ["desk"])
+        )
         server.open("/shown", Desk())
         bearers = {token.text: {"Authorization": f"Bearer {token.text}"} for token in (TOKEN, desk)}
         here = f"http://localhost:{server.ports[0]}"
@@ -318,6 +315,19 @@ def test_who_comes_later_is_told_the_present_state():
     serve(use)
 
 
+def test_each_page_is_told_in_its_language():
+    async def use(server):
+        server.tell("status", hint=English("Show me the cube"), own=[English("Of my own")])
+        async with page_of(server) as one, page_of(server, "dos1&language=es") as other:
+            for page, words in ((one, "Show me the cube"), (other, "Enséñame el cubo")):
+                told = await page.told("status")
+                language = "es" if page is other else "en"
+                assert told["hint"] == {"words": words, "language": language}
+                assert told["own"] == [{"words": "Of my own", "language": ""}]
+
+    serve(use)
+
+
 def test_players_ask_and_viewers_cannot():
     async def use(server):
         async with page_of(server, "view", "view") as view, page_of(server, "play") as play:
@@ -329,7 +339,7 @@ def test_players_ask_and_viewers_cannot():
             await play.told("tick")
             assert server.take_requests() == [read_said('{"do":"play","name":"follow"}')]
             assert server.take_requests() == []
-            assert server.wanted == {("plain", 0), ("cards", 0)}
+            assert server.wanted == {("plain", 0), ("cards en", 0)}
 
     serve(use)
 

@@ -108,7 +108,7 @@ class Browser:
             is_new = "<form" in said["html"] and said["number"] != self.number
             if is_new or said.get("over"):
                 self.number = said["number"]
-                return said["html"]
+                return said["html"] + str(said.get("words"))
 
     async def send(self, answer, number=None):
         told = {"do": "answer", "id": self.number if number is None else number, "name": answer}
