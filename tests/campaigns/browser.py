@@ -1,7 +1,7 @@
 """Play in a real browser over a line with faults: `python -m tests.campaigns.browser`.
 
-The page's camera and its picture go through a proxy on loopback that stalls, slows down, drops
-connections and is cut off; and what happens to a phone happens to the page: it is hidden, turned,
+The page's camera and its picture go through a proxy on loopback that stalls, slows down, drops or
+forgets connections and is cut off; and what happens to a phone happens to the page: it is hidden, turned,
 loaded again, and its camera is taken away. After each fault, the time is measured until a picture
 is shown that was taken after it, and how late the pictures are then. The exit code is 1 if the page
 is not back in time, says nothing of what it needs, or if its pictures become later and later.
@@ -120,6 +120,8 @@ FAULTS: dict[str, Fault] = {
     "stalled for 3 s": Fault(lambda phone: phone.proxy.stall(3.0)),
     "stalled for 10 s": Fault(lambda phone: phone.proxy.stall(10.0)),
     "dropped": Fault(lambda phone: phone.proxy.cut(0.0)),
+    "forgotten": Fault(lambda phone: phone.proxy.forget(0.0)),
+    "forgotten for 3 s": Fault(lambda phone: phone.proxy.forget(3.0)),
     "cut for 10 s": Fault(lambda phone: phone.proxy.cut(10.0)),
     "1 MB/s for 5 s": Fault(lambda phone: phone.proxy.slow_down(5.0, 1e6)),
     "tab hidden for 3 s": Fault(Phone.hide),

@@ -1,4 +1,4 @@
-"""A proxy on loopback that stalls, slows down, drops connections, and is cut off."""
+"""A proxy on loopback that stalls, slows down, drops or forgets connections, and is cut off."""
 
 import asyncio
 import contextlib
@@ -11,7 +11,8 @@ class FaultyProxy:
         self._target = target
         self._flowing = asyncio.Event()
         self._flowing.set()
-        self._cut = False
+        self._cut = self._forgets = False
+        self._forgotten: set[asyncio.StreamWriter] = set()
         self.bytes_per_s = 0.0
         """What it carries each way; 0 for all."""
         self.up, self.down = 0, 0
@@ -52,6 +53,17 @@ class FaultyProxy:
         await asyncio.sleep(seconds)
         self._cut = False
 
+    async def forget(self, seconds: float) -> None:
+        """Say nothing more, ever, on the connections that are there in some seconds.
+
+        So it is for those of a router that was switched off, or of a phone in another network:
+        nobody is told, and only new connections work.
+        """
+        self._forgets = True
+        self._forgotten |= self._writers
+        await asyncio.sleep(seconds)
+        self._forgets = False
+
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         if self._cut:
             writer.transport.abort()
@@ -63,10 +75,13 @@ class FaultyProxy:
             return
         pair = {writer, to_writer}
         self._writers |= pair
+        if self._forgets:
+            self._forgotten |= pair
         await asyncio.gather(
             self._copy(reader, to_writer, up=True), self._copy(to_reader, writer, up=False)
         )
         self._writers -= pair
+        self._forgotten -= pair
 
     async def _copy(
         self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, *, up: bool
@@ -74,6 +89,8 @@ class FaultyProxy:
         with contextlib.suppress(OSError):
             while data := await reader.read(65536):
                 await self._flowing.wait()
+                if writer in self._forgotten:
+                    continue
                 if self.bytes_per_s:
                     await asyncio.sleep(len(data) / self.bytes_per_s)
                 self.up += len(data) if up else 0

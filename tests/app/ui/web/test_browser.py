@@ -92,7 +92,8 @@ def test_a_browser_plays_and_goes_on_after_a_reload_and_faults_of_its_line(desk)
         await tab.until("!window.isOld && typeof delays !== 'undefined' && delays.length > 2")
         assert await tab.run("$('start').hidden"), "nobody has touched it"
         await tab.run("window.onpicture = (id, taken) => { window.lastTaken = taken; }; true")
-        for fault in (desk.proxy.stall(0.5), desk.proxy.cut(0.0), desk.proxy.cut(2.0)):
+        proxy = desk.proxy
+        for fault in (proxy.stall(0.5), proxy.cut(0.0), proxy.cut(2.0), proxy.forget(0.5)):
             await fault
             await time_to_picture(tab, 20.0)
         assert not errors(tab)
