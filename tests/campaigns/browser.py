@@ -1,10 +1,11 @@
 """Play in a real browser over a line with faults: `python -m tests.campaigns.browser`.
 
 The page's camera and its picture go through a proxy on loopback that stalls, slows down, drops or
-forgets connections and is cut off; and what happens to a phone happens to the page: it is hidden, turned,
-loaded again, and its camera is taken away. After each fault, the time is measured until a picture
-is shown that was taken after it, and how late the pictures are then. The exit code is 1 if the page
-is not back in time, says nothing of what it needs, or if its pictures become later and later.
+forgets connections and is cut off; and what happens to a phone happens to the page: it is hidden,
+turned, loaded again, and its camera is taken away. After each fault, the time is measured until a
+picture is shown that was taken after it, and how late the pictures are then. The exit code is 1 if
+the page is not back in time, says nothing of what it needs, or if its pictures become later and
+later.
 """
 
 import argparse
