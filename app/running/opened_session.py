@@ -303,6 +303,10 @@ class OpenedSession:
             return "A recording stays as it began"
         if self.options.controller != "tree":
             return f"The controller {self.options.controller} is made for this character"
+        if self.options.idle is not None:
+            return "The idle motion is made for this character"
+        if self.options.players > 1:
+            return "Several players stay with what they play"
         return "A replay from a later channel stays as it was recorded"
 
     def restart(self) -> None:

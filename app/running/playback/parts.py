@@ -53,7 +53,9 @@ def _why_fixed(session: OpenedSession) -> str:
 
 
 def _refuse_camera(session: OpenedSession) -> str:
-    return _why_fixed(session) if session.source.live else "The frames are those of a recording"
+    if not session.source.live:
+        return "The frames are those of a recording"
+    return session.why_it_stays if session.recording is not None else ""
 
 
 def _cameras(session: OpenedSession) -> Iterator[MenuChoice]:

@@ -67,6 +67,8 @@ class PageClient:
         self.page, self.role = page, role
         self.attempt = attempt
         """Which connection of the page this is: a later one has a larger number."""
+        self.camera = ""
+        """The camera that it has named last; "" for the one that it had before a cut."""
         self.heard = clock()
         """When it said something last [s]."""
         self._kind, self._language, self._fineness = kind, language, FinenessControl()

@@ -122,6 +122,7 @@ class WebScreen:
     def report(self, status: SessionStatus) -> None:
         """Tell the pages the state of the session."""
         self._status = status
+        self._server.keeps_camera = status.recorded
         self._tell()
 
     def notify(self, words: str) -> None:

@@ -8,8 +8,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Protocol, cast, get_args
+from typing import cast, get_args
 from urllib.parse import urlsplit
 
 from aiohttp import web
@@ -18,6 +17,7 @@ from cubeling.app.admission import Token
 from cubeling.app.errors import AppError
 from cubeling.app.ui.web.acceptor import Acceptor, Listener
 from cubeling.app.ui.web.client import CARDS, LAST_WORDS_S, Look, PageClient, ShownPicture
+from cubeling.app.ui.web.content import OpenedContent, WebContent, exchange
 from cubeling.app.ui.web.language import LANGUAGES, English, language_of
 from cubeling.app.ui.web.limits import WebLimits
 from cubeling.app.ui.web.messages import PLAYER_ROLES, Role, Said
@@ -37,10 +37,10 @@ TOKEN_PATH = "/token"
 PAGE_PATHS, VIEW_PATH = ("/", "/window", "/camera"), "/view"
 """One page, which looks at its address, and the one that only shows the picture."""
 
-MAX_SENT_BYTES = 65_536
-"""Size of what a page posts [B]."""
-
 REFUSED = "the token is missing or wrong\n"
+
+KEEPS_CAMERA = "A recording keeps its camera: end it first"
+"""What a page is told whose camera would take the place of the recorded one."""
 
 CHECK_EVERY_S = 0.1
 """How often it is looked whom the limits of time let go [s]."""
@@ -51,26 +51,6 @@ MAX_REQUESTS = 64
 PAGE_NAME = re.compile(r"[a-z0-9]{4,32}")
 ATTEMPT = re.compile(r"[0-9]{1,16}")
 CAMERA_NAME = re.compile(r"[a-z0-9]{1,16}(-[a-z]{1,8})?")
-
-
-class WebContent(Protocol):
-    """What is served below a path; it is called on threads of the server, which may wait."""
-
-    def get(self, place: str) -> tuple[str, bytes] | None:
-        """Return the media type and the data of what is at a place; None for nothing."""
-        ...
-
-    def post(self, data: bytes) -> tuple[str, bytes] | None:
-        """Take what a page sends, and return the reply; None for what takes nothing."""
-        ...
-
-
-@dataclass(frozen=True)
-class _Opened:
-    """What `WebServer.open` has opened."""
-
-    content: WebContent
-    token: Token
 
 
 class WebServer:
@@ -113,12 +93,14 @@ class WebServer:
         """The pictures of the camera."""
         self.camera = ""
         """Name of the camera that sends pictures, "ab12-back"; "" before the first."""
+        self.keeps_camera = False
+        """Whether no other camera may send pictures now, as a recording holds those of one."""
         self.tiles: Sequence[bytes] = ()
         """The scenarios' pictures, as messages."""
         self._token, self._limits, self._clock = token, limits or WebLimits(), clock
         self._welcome = dict(welcome or {})
         self._documents = {VIEW_PATH: view_page(), **dict.fromkeys(PAGE_PATHS, main or page())}
-        self._opened: dict[str, _Opened] = {}
+        self._opened: dict[str, OpenedContent] = {}
         self._kept: dict[str, dict[str, object]] = {}
         self._requests: queue.Queue[Said] = queue.Queue(MAX_REQUESTS)
         self._clients: dict[str, PageClient] = {}
@@ -164,7 +146,7 @@ class WebServer:
         document
             The page at that path, which anybody may read; None for none.
         """
-        self._opened[path] = _Opened(content, token or self._token)
+        self._opened[path] = OpenedContent(content, token or self._token)
         if document is not None:
             self._documents[path] = document
 
@@ -278,24 +260,9 @@ class WebServer:
             return web.Response(status=404, text="there is no such page\n")
         if not self._tells(request, opened.token):
             return web.Response(status=403, text=REFUSED)
-        return await self._exchange_content(request, opened.content, place)
-
-    async def _exchange_content(
-        self, request: web.BaseRequest, content: WebContent, place: str
-    ) -> web.StreamResponse:
-        """Answer who knows the token of some content; nothing of it runs in the loop."""
-        if request.method == "POST":
-            if not 0 < (request.content_length or 0) <= MAX_SENT_BYTES:
-                return web.Response(status=413, text="too much, or of no length\n")
-            found = await asyncio.to_thread(content.post, await request.read())
-        else:
-            found = await asyncio.to_thread(content.get, place)
+        found = await exchange(request, opened.content, place)
         self._acceptor.admit(request.protocol)
-        if found is None:
-            return web.Response(status=404, text="there is no such thing\n")
-        kind, data = found
-        headers = {"Content-Type": kind, "Cache-Control": "no-store"}
-        return web.Response(body=data, headers=headers)
+        return found
 
     def _tells(self, request: web.BaseRequest, token: Token) -> bool:
         """Return whether a request tells a token."""
@@ -381,7 +348,10 @@ class WebServer:
         elif said.do == "camera":
             if not CAMERA_NAME.fullmatch(said.name):
                 raise AppError("this is no name of a camera")
-            if self._place.ask(client, take=said.take):
+            client.camera = said.name
+            if self.keeps_camera and said.name != self.camera:
+                client.tell(do="words", said=English(KEEPS_CAMERA))
+            elif self._place.ask(client, take=said.take):
                 self.camera = said.name
                 self.feed.begin()
                 self._ask(said)
@@ -394,7 +364,7 @@ class WebServer:
 
     def _see(self, client: PageClient, number: int, taken: float, jpeg: bytes) -> None:
         client.tell(do="got", id=number)
-        if self._place.saw(client):
+        if client.camera in ("", self.camera) and self._place.saw(client):
             # The source finds the picture's time by its very bytes.
             self._tags.append((jpeg, client.page, taken))
             if not self.feed.push(jpeg, taken):

@@ -114,7 +114,8 @@ def test_another_robot_takes_over_in_the_midst_of_a_recording(play):
         assert before - 1e-6 <= min(wire) <= after + 1e-6
 
 
-def test_another_camera_is_taken_without_a_gap_in_time(play, short_session, monkeypatch):
+@pytest.mark.parametrize("players", [1, 2])
+def test_another_camera_is_taken_without_a_gap_in_time(play, short_session, monkeypatch, players):
     class SmallCamera(LiveSession):
         """Another camera, whose pictures are smaller and whose clock shows another time."""
 
@@ -127,7 +128,7 @@ def test_another_camera_is_taken_without_a_gap_in_time(play, short_session, monk
             return frame and replace(frame, image=cv2.resize(frame.image, self.size))
 
     monkeypatch.setattr(opened_session, "open_source", lambda uri, size=None: SmallCamera())
-    player = play(*asked("camera", "camera:1"), live=True)
+    player = play(*asked("camera", "camera:1"), live=True, players=players)
     assert player.notices[-1] == "The camera is now camera:1"
     stamps = [step.frame.timestamp for step in player.steps]
     np.testing.assert_allclose(np.diff(stamps), 1 / 30, atol=1e-4)
@@ -142,6 +143,11 @@ def test_a_recording_keeps_its_camera_and_its_character(play):
         "A recording stays as it began: the camera stays",
         "A recording stays as it began: the character stays",
     ]
+
+
+def test_several_players_are_told_why_their_scenario_stays(play):
+    player = play((3, Choose("character", "human")), (5, leave), live=True, players=2)
+    assert player.notices == ["Several players stay with what they play: the character stays"]
 
 
 def test_cameras_that_open_are_listed_and_others_are_not(play, monkeypatch):

@@ -15,11 +15,12 @@ import pytest
 
 from cubeling.app.admission import Token
 from cubeling.app.ui.web.acceptor import Listener
+from cubeling.app.ui.web.content import MAX_SENT_BYTES
 from cubeling.app.ui.web.language import English
 from cubeling.app.ui.web.messages import PICTURE, SOUND, pack, read_said, unpack
 from cubeling.app.ui.web.page import MAX_PAGE_BYTES, document
 from cubeling.app.ui.web.place import CAMERA_QUIET_S, CameraPlace
-from cubeling.app.ui.web.server import LOOPBACK, MAX_SENT_BYTES, WebServer
+from cubeling.app.ui.web.server import LOOPBACK, WebServer
 from tests.bench.web.sizes import pages, sizes
 
 WAIT_S = 20.0
@@ -194,6 +195,33 @@ def test_a_phone_may_take_the_place_of_another_and_a_window_cannot():
             assert (await first.told("place"))["camera"] == "other"
             assert server.camera == "second"
             assert [each.mirror for each in server.take_requests()] == [False, True]
+
+    serve(use)
+
+
+def test_a_recording_keeps_its_camera_whoever_asks():
+    async def use(server):
+        async with page_of(server, "first") as first, page_of(server, "second") as second:
+            await first.say(do="camera", name="ab12-back")
+            await first.see(1, JPEG)
+            await first.told("got")
+            server.keeps_camera = True
+            refused = "A recording keeps its camera: end it first"
+            await second.say(do="camera", name="cd34-back", take=True)
+            assert (await second.told("words"))["said"]["words"] == refused
+            await first.say(do="camera", name="ab12-front")
+            assert (await first.told("words"))["said"]["words"] == refused
+            await first.see(2, JPEG)
+            await first.told("got")
+            assert server.feed.number == 1, "of the other side of the phone"
+            await first.say(do="camera", name="ab12-back")
+            await first.see(3, JPEG)
+            await first.told("got")
+            assert server.feed.number == 2
+            await second.say(do="camera", name="ab12-back", take=True)  # its page was opened again
+            await second.see(4, JPEG)
+            await second.told("got")
+            assert server.feed.number == 3
 
     serve(use)
 

@@ -347,7 +347,7 @@ def test_a_phone_is_the_page_of_the_questions_the_window_and_the_camera(tmp_path
                 assert await tab.run("stream") is None, "its camera is not open meanwhile"
                 await tab.run("document.querySelector('#sheet button').click()")
             await tab.until("$('sheet').hidden && shown > 5", 60.0)
-            assert await tab.run("Object.keys(bar).join()") == "turn,sound,done", "nothing to choose"
+            assert await tab.run("Object.keys(bar).join()") == "turn,sound,done"
             await tab.run("say({do: 'record'}); say({do: 'play', name: 'follow'})")
             await tab.until("shown > 30", 60.0)
             assert await tab.run("session.scenario") == "companion"
