@@ -111,6 +111,7 @@ class WindowFinder:
     def __init__(self, cube: CubeModel, projection: Projection, prints: Array) -> None:
         self._projection, self._edge = projection, cube.edge
         self._points = np.concatenate([cube.vertices, prints.reshape(-1, 3)])
+        self._vertices = len(cube.vertices)
 
     def window(self, camera_from_cube: Array, scale: int = 0) -> HandWindow | None:
         """Return the window at a pose, (4, 4); None where the cube is hardly in the picture.
@@ -126,10 +127,11 @@ class WindowFinder:
         if not scale or not MIN_EDGE_PX < edge / scale < MAX_EDGE_PX:
             scale = max(1, round(edge / WORKING_EDGE_PX))
         reach = REACH_EDGES * edge
-        quads = (pixels[8:] + 0.5) / scale - 0.5
+        body, prints = pixels[: self._vertices], pixels[self._vertices :]
+        quads = (prints + 0.5) / scale - 0.5
         bounds = (
             each.tolist()
-            for part in (pixels[:8], quads)
+            for part in (body, quads)
             for each in (part.min(axis=0), part.max(axis=0))
         )
         ranges = []
