@@ -216,8 +216,8 @@ class HandFinder:
         hand = choose_components(odds > 0, window, cube, place, by_colour, distinctness)
         if hand is not None and distinctness > MIN_DISTINCTNESS:
             most = max(MAX_STILL_SHARE * np.count_nonzero(hand), window.edge**2)
+            # Not forgotten as desk: what is in its colours would stay the hand when that has gone.
             still = self._still_parts(hand, place, view, by_colour, cube, most)
-            place = self._without(still, place, window)
             odds[still] = np.maximum(odds[still], np.float32(STILL_ODDS))
             hand = np.asarray(cv2.max(hand, still.view(np.uint8)), np.uint8)
         self._learn(view, cube, place, odds, hand)

@@ -130,9 +130,7 @@ class WindowFinder:
         body, prints = pixels[: self._vertices], pixels[self._vertices :]
         quads = (prints + 0.5) / scale - 0.5
         bounds = (
-            each.tolist()
-            for part in (body, quads)
-            for each in (part.min(axis=0), part.max(axis=0))
+            each.tolist() for part in (body, quads) for each in (part.min(axis=0), part.max(axis=0))
         )
         ranges = []
         for low, high, first, last, side in zip(*bounds, self._projection.size, strict=True):

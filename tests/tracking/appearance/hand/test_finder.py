@@ -12,13 +12,16 @@ from cubeling.app.session.bundled import bundled_session
 from cubeling.tracking.appearance.hand.background import FULL_AGE
 from cubeling.tracking.appearance.hand.finder import HandFinder
 from cubeling.tracking.appearance.hand.mask import EDGE_SLOPE, HandMask
+from cubeling.tracking.appearance.hand.on_cube.face_pattern import FacePattern
 from cubeling.tracking.appearance.hand.window import STILL_FRAMES, Stillness, WindowFinder
+from cubeling.tracking.cube.model import CubeModel
 from cubeling.tracking.geometry.intrinsics import Intrinsics
 from cubeling.tracking.geometry.projection import Projection
 from cubeling.tracking.sources import open_source
 from cubeling.tracking.tracker.tracker import CubeTracker
 from tests.bench.hand_mask import covered, overlap
 from tests.bench.hand_scenes import GLOVES, SKINS, HandView
+from tests.bench.photographs.sequence import BODY_FILE
 from tests.examples import some
 from tests.tracking.appearance.hand.resting_scene import (
     CUBE,
@@ -149,6 +152,7 @@ def test_a_square_of_the_hand_that_was_learned_as_desk_is_no_hole_in_it(film):
     core = covered(before, picture.shape)[rows, columns] > 0.99
     assert core.sum() > 100 * mask.scale**2
     assert found[rows, columns][core].mean() > 0.95
+    assert (background._age[hole] == 2 * FULL_AGE).all()  # it is the desk again when the hand goes
 
 
 @pytest.mark.slow(reason="a desk is drawn")
@@ -192,6 +196,19 @@ def test_a_still_picture_with_noise_does_not_flicker(film):
     change = [np.abs(a - b).sum() / area for a, b in itertools.pairwise(covers)]
     assert np.mean(change) < 0.003
     assert max(change) < 0.05
+
+
+def test_the_prints_of_a_body_with_many_corners_are_where_its_faces_are():
+    body, intrinsics = CubeModel.load(BODY_FILE), Intrinsics.guess(FULL)
+    projection, pose = Projection(intrinsics), np.eye(4)
+    pose[2, 3] = 0.4
+    prints = FacePattern(body, projection).corners
+    window = WindowFinder(body, projection, prints).window(pose)
+    assert window is not None
+    corner = np.array([window.left, window.top])
+    found = (window.quads + corner + 0.5) * window.scale - 0.5
+    at = prints.reshape(-1, 3) + pose[:3, 3]
+    assert found.reshape(-1, 2) == pytest.approx(projection.project(at))
 
 
 def test_a_window_that_shows_the_same_is_looked_at_now_and_then():
