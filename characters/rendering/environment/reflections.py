@@ -86,6 +86,7 @@ def tiles_by_roughness() -> Array:
     return np.array([(each.side, each.column, each.row) for each in _STEPS], float)
 
 
+@cache
 def rows_between(least: float, most: float) -> slice:
     """Return the rows of the texture that surfaces of a range of roughness need.
 
@@ -130,7 +131,8 @@ class ReflectionFilter:
     def step(self) -> None:
         """Filter the next part."""
         for _, taps, filtered in self._tiles:
-            first, end = (len(filtered) * part // PARTS for part in (self.done, self.done + 1))
+            first = len(filtered) * self.done // PARTS
+            end = len(filtered) * (self.done + 1) // PARTS
             taken = self._texels.take(taps.parts[self.done]).view(np.float32)
             np.matmul(taps.weights, taken, out=filtered[first:end].reshape(-1))
         self.done += 1

@@ -32,12 +32,17 @@ CENTRE_M = np.array([0.0, 0.08, 0.0])
 REACH_M = 1.0
 """How far the table reaches, and how far what stands around it is [m]: a desk, and its walls."""
 
-LOOK_INTERVAL_S, RENEWAL_INTERVAL_S = 0.1, 0.5
-"""Time from one look at the picture to the next, and least time from one map to the next."""
+LOOK_INTERVAL_S, RENEWAL_INTERVAL_S = 0.1, 0.6
+"""Time from one look at the picture to the next, and usual time from one map to the next: there are
+never more than two in twice that time."""
 
-MIN_CHANGE = 3.0
-"""Difference from the picture of the last map from which on there is a new one: the root of the
-mean square, of 255. The noise of a camera is less in a picture of so few pixels."""
+HASTY_INTERVAL_S, QUIET_S = 0.2, 1.8
+"""Time from one map to the next where much has changed, and least time since the map before these
+then: while all is in motion, maps are evenly spaced."""
+
+MIN_CHANGE, MUCH_CHANGE = 3.0, 8.0
+"""Difference from the picture of the last map from which on there is a new one, and in haste: the
+root of the mean square, of 255. The noise of a camera is less in a picture of so few pixels."""
 
 MIN_DISTANCE_M = 0.06
 """Least distance of what stands on the table from the centre: what is nearer would hide all else,
@@ -103,7 +108,7 @@ class RoomMeter:
         self._standing: list[Seen] = []
         self._last: Image | None = None  # small picture of the last map
         self._map: EnvironmentMap | None = None
-        self._looked = self._renewed = -np.inf
+        self._looked = self._renewed = self._renewed_before = -np.inf
 
     def update(
         self,
@@ -131,25 +136,30 @@ class RoomMeter:
         """
         if now < self._looked:  # a recording is wound back
             self._looked = self._renewed = now - RENEWAL_INTERVAL_S
+            self._renewed_before = now - 2 * RENEWAL_INTERVAL_S
         due = self._map is None or now - self._looked >= LOOK_INTERVAL_S - 1e-6
         if camera_from_table is None or not due:
             return self._map
         self._looked = now
-        if now - self._renewed < RENEWAL_INTERVAL_S - 1e-6:
+        waited = now - self._renewed + 1e-6
+        since_last_two = now - self._renewed_before + 1e-6
+        is_due = waited >= RENEWAL_INTERVAL_S and since_last_two >= 2 * RENEWAL_INTERVAL_S
+        if not is_due and (waited < HASTY_INTERVAL_S or since_last_two < QUIET_S):
             return self._map
         height = max(image.shape[0] * SMALL_WIDTH // image.shape[1], 1)
         small = np.asarray(cv2.resize(image, (SMALL_WIDTH, height)), np.uint8)
-        if self._differs(small) or self._has_moved(camera_from_table):
+        change = MIN_CHANGE if is_due else MUCH_CHANGE
+        if self._differs(small, change) or self._has_moved(camera_from_table):
             self._see(small, camera_from_table, now)
             self._map = self._complete(light, now)
-            self._last, self._renewed = small, now
+            self._last, self._renewed_before, self._renewed = small, self._renewed, now
         return self._map
 
-    def _differs(self, small: Image) -> bool:
+    def _differs(self, small: Image, least: float) -> bool:
         last = self._last
         if last is None or last.shape != small.shape:
             return True
-        return bool(cv2.norm(small, last) > MIN_CHANGE * np.sqrt(small.size))
+        return bool(cv2.norm(small, last) > least * np.sqrt(small.size))
 
     def _has_moved(self, camera_from_table: Array) -> bool:
         return self._pose is None or bool(np.abs(camera_from_table - self._pose).max() > MAX_MOVE)

@@ -18,6 +18,8 @@ from cubeling.tracking.appearance.room.cube_map import (
 )
 from cubeling.tracking.appearance.room.room_meter import (
     CENTRE_M,
+    HASTY_INTERVAL_S,
+    LOOK_INTERVAL_S,
     MIN_LIGHT,
     RENEWAL_INTERVAL_S,
 )
@@ -176,15 +178,31 @@ def test_a_picture_that_stays_makes_no_new_map_and_noise_neither():
         assert meter.update(noisy, TABLE, None, number / 30) is first
 
 
-def test_maps_are_no_more_than_two_a_second():
+def test_maps_are_less_than_two_a_second_and_evenly_spaced_while_all_changes():
     meter, times = RoomMeter(LENS), []
-    for number in range(90):
-        found = meter.update(grey(40 + 2 * number), TABLE, None, number / 30)
+    for number in range(120):
+        found = meter.update(grey(10 + 2 * number), TABLE, None, number / 30)
         assert found is not None
         if found.timestamp not in times:
             times.append(found.timestamp)
     assert len(times) > 4
-    assert np.diff(times).min() >= RENEWAL_INTERVAL_S - 1e-6
+    assert np.subtract(times[2:], times[:-2]).min() >= 2 * RENEWAL_INTERVAL_S - 1e-6
+    assert np.diff(times)[2:].max() < RENEWAL_INTERVAL_S + 0.1
+
+
+def test_what_changes_much_just_after_another_change_is_in_a_map_soon():
+    meter = RoomMeter(LENS)
+    times, picture = set(), grey(60)
+    for number in range(90):
+        if number == 60:
+            picture = with_spot((0.1, 0.0, 0.0))
+        if number == 62:
+            picture = grey(200)
+        found = meter.update(picture, TABLE, None, number / 30)
+        assert found is not None
+        times.add(round(30 * found.timestamp))
+    assert len(times) == 3
+    assert 62 <= sorted(times)[-1] <= 62 + 30 * (HASTY_INTERVAL_S + LOOK_INTERVAL_S)
 
 
 def test_there_is_none_without_a_table_and_one_at_once_with_it():
