@@ -254,15 +254,17 @@ class Dialogue:
     def _choose(self, moment: DialogueMoment, *, only_answers: bool) -> _Step | None:
         """Choose the unit that takes a step, and the step; None if none can."""
         state = self.state
+        passed = replace(moment, passed_over=True)
         for group in (
             [u for u in self.script.units if u.strong and u.name == state.last],
             *self._groups,
         ):
             able = []
             for unit in group:
-                passed = state.turns > state.entered.get(unit.name, state.turns)
-                seen = replace(moment, passed_over=True) if passed else moment
-                steps = self._steps(unit, seen, only_answers=only_answers)
+                is_passed = state.turns > state.entered.get(unit.name, state.turns)
+                steps = self._steps(
+                    unit, passed if is_passed else moment, only_answers=only_answers
+                )
                 if steps:
                     able.append(steps)
             if able:
