@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cubeling.characters.dialogue.checking import SAID_SLOT
-from cubeling.characters.dialogue.patterns import Heard, fill
+from cubeling.characters.dialogue.patterns import FILLED, Heard, fill
 from cubeling.characters.dialogue.script import DialogueScript, Localized, Unit, UnitTransition
 from cubeling.characters.dialogue.vocabulary import (
     CORE_VOCABULARY,
@@ -93,6 +93,9 @@ class DialogueState:
     recent: tuple[str, ...] = ()
     """The last two texts that were said."""
 
+    quotes: bool = False
+    """Whether the last text quotes the one before, which stays the one to remember."""
+
     profile: dict[str, str] = field(default_factory=dict)
     """What is remembered, by slot."""
 
@@ -162,7 +165,7 @@ class Dialogue:
         state = self.state
         heard, state.asked = state.asked, None
         state.turns += 1
-        state.recent = (*state.recent, text)[-2:]
+        state.recent, state.quotes = (*state.recent, text)[-2:], False
         state.quiet_since = now
         return DialogueTurn(text, state.language, (), (), "" if heard is None else heard.text)
 
@@ -174,8 +177,8 @@ class Dialogue:
 
     def remember_said(self, text: str) -> None:
         """Remember what was heard of the last reply: all of it, or as far as it came."""
-        # A reply may hold what was said, again and again.
-        self.state.profile[SAID_SLOT] = text[:MAX_LINE_CHARS]
+        if not self.state.quotes:
+            self.state.profile[SAID_SLOT] = text[:MAX_LINE_CHARS]
 
     def update(
         self,
@@ -325,7 +328,8 @@ class Dialogue:
     def _choose_text(self, texts: Localized[str], line: int) -> str:
         """Choose a text, each once before any comes again, and never the one just said."""
         state = self.state
-        choices = [fill(text, state.profile) for text in texts.of(state.language)]
+        found = texts.of(state.language)
+        choices = [fill(text, state.profile) for text in found]
         key = line, state.language
         # Actions of one line share what is unused, and one of them may have more texts.
         unused = [number for number in state.unused.get(key, ()) if number < len(choices)]
@@ -337,6 +341,8 @@ class Dialogue:
         number = fresh[self._draw(len(fresh))]
         state.unused[key] = tuple(each for each in unused if each != number)
         state.recent = (*state.recent, choices[number])[-2:]
+        quoted = (slot[1].lower() for slot in FILLED.finditer(found[number]))
+        state.quotes = SAID_SLOT in quoted
         return choices[number]
 
     def _draw(self, count: int) -> int:

@@ -216,7 +216,9 @@ def _is_about(moment: DialogueMoment, topics: Localized[WordSet]) -> Slots | Non
     heard = moment.heard
     if heard is None or not heard.typed:
         return None
-    found = any(topic.closest(word) for topic in topics.of(moment.language) for word in heard.plain)
+    # A word that the script knows means itself, however like one of the topic's it is.
+    words = {*heard.plain, *moment.spelled}
+    found = any(not words.isdisjoint(topic.words) for topic in topics.of(moment.language))
     return {} if found else None
 
 

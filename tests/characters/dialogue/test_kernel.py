@@ -187,9 +187,13 @@ def test_a_text_is_never_said_three_times_running(tmp_path: Path) -> None:
 def test_a_reply_that_repeats_itself_does_not_grow_for_ever(tmp_path: Path) -> None:
     texts = "<text>I said: {said}</text><text>Once more: {said}</text>"
     talk = dialogue(tmp_path, unit("u", "again", texts, **CYCLIC))
-    for number in range(100):
-        talk.remember_said(said(talk, "again", float(number)))
+    talk.remember_said("Hello. " * 100)
     assert len(talk.state.profile["said"]) <= MAX_LINE_CHARS
+    talk.remember_said("Hello.")
+    for number in range(100):
+        reply = said(talk, "again", float(number))
+        assert reply in ("I said: Hello.", "Once more: Hello.")
+        talk.remember_said(reply)
 
 
 def test_actions_of_one_line_may_have_different_numbers_of_texts(tmp_path: Path) -> None:

@@ -121,6 +121,9 @@ def test_it_remembers_what_was_heard_and_not_what_was_planned(talk):
     assert 0 < len(heard) < len(whole)
     assert heard in TaggedText.read(talk.say("what did you say?")).text
     talk.wait(8.0)
+    assert talk.profile["said"] == heard, "who quotes says nothing new"
+    talk.say("tell me a joke")
+    talk.wait(8.0)
     assert talk.profile["said"] == TaggedText.read(talk.replies[-1]).text, "all of it was heard"
 
 
