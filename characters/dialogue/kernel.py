@@ -264,6 +264,8 @@ class Dialogue:
         ):
             able = []
             for unit in group:
+                if moment.heard is None and unit.states[state.states[unit.name]].only_hears:
+                    continue
                 is_passed = state.turns > state.entered.get(unit.name, state.turns)
                 steps = self._steps(
                     unit, passed if is_passed else moment, only_answers=only_answers

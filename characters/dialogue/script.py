@@ -93,6 +93,11 @@ class UnitState:
     line: int
     """Line of the script."""
 
+    @cached_property
+    def only_hears(self) -> bool:
+        """Whether nothing happens in it as long as nothing is said."""
+        return all(each.hears for each in self.transitions)
+
 
 @dataclass(frozen=True)
 class Unit:

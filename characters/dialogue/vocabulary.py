@@ -190,11 +190,14 @@ def _matches(moment: DialogueMoment, patterns: Localized[WordPattern]) -> Slots 
     heard = moment.heard
     if heard is None:
         return None
+    words, spelled = set(heard.plain), set(moment.spelled)
     for pattern in patterns.of(moment.language):
         if pattern.is_open and not heard.typed:
             continue  # what the cube does needs no answer
-        slots = pattern.match(heard)
-        if slots is None and heard.typed and moment.spelled != heard.plain:
+        slots = None
+        if words.issuperset(pattern.words):  # few of many patterns are worth to be matched
+            slots = pattern.match(heard)
+        if slots is None and moment.spelled and spelled.issuperset(pattern.words):
             slots = pattern.match(heard, moment.spelled)
         if slots is not None:
             return slots

@@ -181,14 +181,15 @@ class Talk:
 
     def _update(self, text: str) -> bool:
         """Advance the dialogue, check what it does, and return whether it said something."""
-        began = time.process_time()
+        began = time.process_time() if text else 0.0
         turn = self._dialogue.update(
             self._now, busy=self._now < self._speaks_until, feelings=self._feelings
         )
-        took = time.process_time() - began  # of this process: others may be busy, too
-        self._score.slowest_s = max(self._score.slowest_s, took)
-        if took > MAX_ANSWER_S:
-            self._score.counts["slow"] += 1
+        if text:
+            took = time.process_time() - began  # of this process: others may be busy, too
+            self._score.slowest_s = max(self._score.slowest_s, took)
+            if took > MAX_ANSWER_S:
+                self._score.counts["slow"] += 1
         if turn is None:
             return False
         for word in self._feelings:
