@@ -56,6 +56,10 @@ from cubeling.characters.locomotion.obstacles import Obstacle as Obstacle, Table
 from cubeling.characters.locomotion.paths import ClosedPath as ClosedPath
 from cubeling.characters.locomotion.places import past_circle as past_circle
 from cubeling.characters.model.character import Character as Character
+from cubeling.characters.model.colours import (
+    colours_of as colours_of,
+    with_colours as with_colours,
+)
 from cubeling.characters.model.mesh import Material as Material, Mesh as Mesh, Morph as Morph
 from cubeling.characters.model.mirroring import mirror_of as mirror_of
 from cubeling.characters.motion.blend import (

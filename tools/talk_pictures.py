@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -13,8 +12,10 @@ from cubeling.affect import LABEL_SETS
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
+from cubeling.app.running.asked_scenario import load_cast
 from cubeling.app.running.kept_lens import intrinsics_for
 from cubeling.app.scenarios import find_scenario
+from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.speaker import LiveSpeaker
 from cubeling.app.ui.cards.layout import CardLayout
 from cubeling.app.ui.cards.overlay import overlay, virtual_robot_side
@@ -22,7 +23,6 @@ from cubeling.app.ui.cards.virtual_robot import VirtualRobot
 from cubeling.app.ui.playback.corner_buttons import ROOM_BELOW
 from cubeling.app.ui.playback.layer import PlaybackLayer
 from cubeling.app.ui.playback.status import SessionStatus
-from cubeling.characters import Character
 from cubeling.characters.rendering import create_context
 from cubeling.characters.speech import DEFAULT_PROFILE, espeak
 from cubeling.tracking import open_source
@@ -66,12 +66,7 @@ def draw_play(folder: Path) -> None:
 def moment(scenario: str, typed: Mapping[float, str], at: float) -> tuple[Step, Picture]:
     """Return the step at a time [s], and its picture with the cards."""
     asked, kind = sorted(typed.items()), find_scenario(scenario)
-    names = getattr(kind, "names", ())
-    others = [
-        replace(Character.load(body), name=name)
-        for body, name in zip(getattr(kind, "others", ()), names[1:], strict=True)
-    ]
-    lead = Character.load(kind.character)
+    lead, *others = load_cast(SessionOptions(source="synthetic:talk", scenario=scenario), kind)
     with ExitStack() as closing:
         source = closing.enter_context(open_source("synthetic:talk"))
         context = create_context()
@@ -79,7 +74,7 @@ def moment(scenario: str, typed: Mapping[float, str], at: float) -> tuple[Step, 
         playground = Playground(
             scenario,
             intrinsics_for(source.intrinsics, source.size),
-            character=replace(lead, name=names[0]) if names else lead,
+            character=lead,
             others=others,
             context=context,
         )

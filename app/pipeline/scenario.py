@@ -301,6 +301,14 @@ class NamingScenario(Protocol):
 
 
 @runtime_checkable
+class DressingScenario(Protocol):
+    """A scenario that gives its own characters other colours."""
+
+    colours: tuple[Mapping[str, str], ...]
+    """For each of the cast, which ones take the place of which; see `with_colours`."""
+
+
+@runtime_checkable
 class FurnishedScenario(Protocol):
     """A scenario that puts things on the table."""
 

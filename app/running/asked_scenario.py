@@ -4,10 +4,10 @@ from dataclasses import replace
 
 from cubeling.affect import Personality
 from cubeling.app.errors import AppError
-from cubeling.app.pipeline.scenario import CastScenario, NamingScenario
+from cubeling.app.pipeline.scenario import CastScenario, DressingScenario, NamingScenario
 from cubeling.app.scenarios import Scenario, ScenarioSettings, make_scenario
 from cubeling.app.session import SessionFile, SessionOptions
-from cubeling.characters import Character, load_to_play
+from cubeling.characters import Character, load_to_play, with_colours
 from cubeling.tracking import CubeModel
 
 
@@ -63,6 +63,9 @@ def load_cast(options: SessionOptions, scenario: Scenario) -> list[Character]:
         )
         for name in names_of_cast(options, scenario)
     ]
+    if isinstance(scenario, DressingScenario) and not (options.character or options.others):
+        dressed = zip(cast, scenario.colours, strict=False)
+        cast[: len(scenario.colours)] = [with_colours(each, colours) for each, colours in dressed]
     if isinstance(scenario, NamingScenario):
         named = zip(scenario.names, cast, strict=False)
         cast = [replace(each, name=name) for name, each in named]

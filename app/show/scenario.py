@@ -76,6 +76,7 @@ class ShowScenario:
     character: str
     others: tuple[str, ...]
     names: tuple[str, ...]
+    colours: tuple[Mapping[str, str], ...]
     personality = "heartfelt"
     has_intensity = False
     adjustable: tuple[str, ...] = ()
@@ -247,5 +248,6 @@ def show_scenario(path: str | Path) -> type[ShowScenario]:
         "character": first.body,
         "others": tuple(each.body for each in others),
         "names": tuple(each.name for each in script.cast),
+        "colours": tuple(each.colours for each in script.cast),
     }
     return type("FileShow", (ShowScenario,), members)

@@ -18,8 +18,8 @@ off, a voice speaks, and a script waits until some time before something has fin
 """
 
 import math
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from cubeling.affect import OCC_FACES
@@ -28,7 +28,7 @@ from cubeling.app.pipeline.choices import MAX_CAST
 from cubeling.app.pipeline.registry import BLOCK_SUFFIXES
 from cubeling.app.pipeline.table.stage_sounds import SoundSource
 from cubeling.app.show.blocks import block_of, document_of, read_document
-from cubeling.characters import CharacterError
+from cubeling.characters import CharacterError, colours_of
 from cubeling.characters.behaviour import XmlElement, XmlLimits, read_xml
 from cubeling.characters.speech import TaggedText
 from cubeling.files import FileKind
@@ -61,6 +61,9 @@ class ShowCharacter:
 
     body: str
     """A bundled character, or a file."""
+
+    colours: Mapping[str, str] = field(default_factory=dict)
+    """Which of its colours another one takes the place of; see `with_colours`."""
 
 
 @dataclass(frozen=True)
@@ -196,12 +199,16 @@ class _Reader:
         )
 
     def _character(self, element: XmlElement) -> None:
-        self._expect(element, "character", ("name", "body"))
+        self._expect(element, "character", ("name", "body", "colours"))
         name, body = self._needs(element, "name"), element.attributes.get("body", "human")
         if name in self._cast or len(self._cast) == MAX_CAST:
             raise self._error(element, f"'{name}' is there, or there are {MAX_CAST} already")
         path = str(self._folder / body) if Path(body).suffix else body
-        self._cast[name] = ShowCharacter(name, path)
+        try:
+            colours = colours_of(element.attributes.get("colours", ""))
+        except CharacterError as error:
+            raise self._error(element, str(error)) from None
+        self._cast[name] = ShowCharacter(name, path, colours)
 
     def _cue(self, element: XmlElement) -> ShowCue:
         tag = element.tag

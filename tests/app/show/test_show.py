@@ -10,13 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from cubeling.app.errors import AppError
 from cubeling.app.pipeline.cast.member import CastMember
 from cubeling.app.pipeline.checkpoint import Checkpoint
 from cubeling.app.pipeline.scenario import OVER_EVENT, ConversingScenario, Inputs, ScenarioSettings
 from cubeling.app.pipeline.table.attention import Attention
 from cubeling.app.pipeline.table.situation import SeenCube, Situation
 from cubeling.app.pipeline.table.spoken_line import SpokenLine
+from cubeling.app.running.asked_scenario import load_cast
 from cubeling.app.scenarios import find_scenario
+from cubeling.app.session import SessionOptions
 from cubeling.app.show.scenario import BACK_S, show_scenario
 from cubeling.app.show.stage_state import MAX_WAIT_S
 from cubeling.app.speaking.line_chooser import LineRequest
@@ -340,3 +343,21 @@ def test_who_is_spoken_to_in_a_play_is_its_dialogue(tmp_path):
     assert theatre.frame(hush=True)[0].hush, "who begins to speak is listened to"
     silent = show_scenario(show_of(tmp_path, '<say who="a">Hello there.</say>'))
     assert silent.conversation is None
+
+
+def test_two_of_one_body_are_told_apart_by_their_colours(tmp_path):
+    options = SessionOptions(source="synthetic:talk", scenario=str(ANTIGONE))
+    scenario = show_scenario(ANTIGONE)(CUBE, ScenarioSettings())
+    creon, antigone = load_cast(options, scenario)
+    assert (creon.name, antigone.name) == ("creon", "antigone")
+    ones, others = creon.meshes[0].colors, antigone.meshes[0].colors
+    different = np.linalg.norm(ones - others, axis=1) > 0.1
+    assert 0.3 < different.mean() < 0.8, "hair and clothes, and not the skin"
+    as_asked = load_cast(replace(options, character="vleo"), scenario)
+    assert as_asked[0].skeleton == bundled_character("vleo").skeleton, "colours are of its own cast"
+
+
+def test_colours_of_another_kind_are_named_by_line(tmp_path):
+    path = show_of(tmp_path, '<wait seconds="1"/>', '<character name="a" colours="red"/>')
+    with pytest.raises(AppError, match=r"my.show:1: 'red' are no colours; write #7c391d=#b9b3a8"):
+        show_scenario(path)
