@@ -1,6 +1,8 @@
 """Springs of limbs: how an arm pulls that is stretched, and how a leg holds what stands on it."""
 
 import math
+import operator
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from cubeling.characters.ik.reaching.arms import Arm
@@ -9,8 +11,8 @@ from cubeling.characters.skeleton.scalar_quaternions import Vector, dot
 ELBOW_SPRING, EASY_FLEXION_RAD = 2.0, math.radians(61.0)
 """How stiff an elbow is that is bent less than it is at ease [rad]."""
 
-KNEE_SPRING, LEG_SPRING = 1.2, 4.0
-"""How stiff a knee is, and a leg whose length changes."""
+KNEE_SPRING, LEG_SPRING, TAUT_LEG = 1.2, 4.0, 300.0
+"""How stiff a knee is, a leg whose length changes, and one that is straight."""
 
 STRAIGHT_RAD = math.radians(16.0)
 """An elbow bent less than this is as good as straight: its spring goes on linearly, so that a place
@@ -19,6 +21,10 @@ out of reach pulls with a finite force."""
 SPARE, MAX_SHORT = 0.015, 0.06
 """Length of an arm that is kept in reserve, and what it may lack at most before it pulls no harder,
 in arm lengths."""
+
+
+Row = list[float]
+"""How a miss changes with the state of a tree: shift, pelvis, spine and collarbones."""
 
 
 class Pull(NamedTuple):
@@ -87,3 +93,41 @@ def stiffen(
     more = string * (own + dot(lever, lever) + max(dot(aim, lever), 0.0))
     for at in range(first, first + 3):
         stiff[at] += more
+
+
+def step_with_taut_legs(step: Row, yields: Sequence[Row], legs: Sequence[tuple[Row, float]]) -> Row:
+    """Return a step of a tree after which its two legs are no longer than straight.
+
+    One that counted on longer legs would end beside its way. A row more changes what is solved by a
+    multiple of how its own force would be solved (Sherman and Morrison 1950). Straight legs only
+    push. Which of them do is tried: one that pulled would hold the pelvis wherever it was.
+
+    Parameters
+    ----------
+    yields
+        What is solved for the force of each leg.
+    legs
+        How each gets longer, with a negative sign, and by how much at most.
+    """
+    over = [-_product(row, step) - room for row, room in legs]
+    if max(over) <= 0.0:
+        return step
+    give = [[_product(row, each) for each in yields] for row, _ in legs]
+    own = [give[leg][leg] + TAUT_LEG**-2 for leg in (0, 1)]
+    for leg, other in ((0, 1), (1, 0)):
+        force = over[leg] / own[leg]
+        if force > 0.0 and over[other] <= force * give[other][leg]:
+            return _moved(step, yields[leg], force)
+    whole = own[0] * own[1] - give[0][1] * give[1][0]
+    first = (over[0] * own[1] - over[1] * give[0][1]) / whole
+    second = (over[1] * own[0] - over[0] * give[1][0]) / whole
+    return _moved(_moved(step, yields[0], first), yields[1], second)
+
+
+def _product(row: Row, change: Row) -> float:
+    product: float = sum(map(operator.mul, row, change))
+    return product
+
+
+def _moved(step: Row, way: Row, share: float) -> Row:
+    return [value + share * more for value, more in zip(step, way, strict=True)]

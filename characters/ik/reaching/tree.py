@@ -10,14 +10,20 @@ found at once, by Gauss-Newton steps on the energy. Limbs are bent to it by the 
 """
 
 import math
-import operator
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from cubeling.characters.ik.reaching.arms import cone_axis, scale_vector
-from cubeling.characters.ik.reaching.limb_springs import Pull, arm_strain, leg_strain, stiffen
+from cubeling.characters.ik.reaching.limb_springs import (
+    Pull,
+    Row,
+    arm_strain,
+    leg_strain,
+    step_with_taut_legs,
+    stiffen,
+)
 from cubeling.characters.ik.reaching.placed_tree import PlacedTree, Settled, Strut
 from cubeling.characters.ik.reaching.torso import PlacedTorso
 from cubeling.characters.skeleton.scalar_quaternions import (
@@ -58,8 +64,8 @@ SPINE_RANGE_DEG = ((-20.0, 65.0), (-40.0, 40.0), (-30.0, 30.0))
 """How far a whole spine does, however many joints it has [degrees]; one of few joints bends less,
 as far as these do by their natural limits."""
 
-LIMIT_SPRING, TAUT_LEG = 14.0, 300.0
-"""How stiff a joint is beyond its range, and a straight leg."""
+LIMIT_SPRING = 14.0
+"""How stiff a joint is beyond its range."""
 
 LONGEST_LEG, SHORTEST_LEG = 0.99, 0.55
 """Extension of a leg that is straight, unless the pose has it straighter, and of one that is folded
@@ -117,10 +123,6 @@ def settle(
     for _ in range(steps):
         state = energy.step(state)
     return energy.as_settled(energy.plant(state))
-
-
-Row = list[float]
-"""How a miss changes with the state: shift, pelvis, spine and collarbones."""
 
 
 class _Energy:
@@ -211,16 +213,8 @@ class _Energy:
         force = np.array(self.misses) @ jacobian + slope
         sides = np.array([force, *(row for row, _ in self.leg_rows)])
         change, *yields = np.linalg.solve(matrix, sides.T).T.tolist()
-        # A leg gets no longer than straight: a step that counted on that would end beside its way.
-        # One more row changes what is solved by a multiple of how its own force would be solved
-        # (Sherman and Morrison 1950).
-        for number, (row, room) in enumerate(self.leg_rows):
-            if -_product(row, change) > room:
-                own, *later = yields[number:]
-                taut = 1.0 / (1.0 / TAUT_LEG**2 + _product(row, own))
-                change = _moved(change, own, -taut * (room + _product(row, change)))
-                later = [_moved(each, own, -taut * _product(row, each)) for each in later]
-                yields[number + 1 :] = later
+        if self.leg_rows:
+            change = step_with_taut_legs(change, yields, self.leg_rows)
         shifted = max(map(abs, change[:3])) / (MAX_STEP_HEIGHTS * self.height)
         size = STEP_SHARE / max(max(map(abs, change[3:])) / MAX_STEP_RAD, shifted, 1.0)
         return [value - size * more for value, more in zip(state, change, strict=True)]
@@ -351,15 +345,6 @@ class _Energy:
             none = [0.0] * (len(self.springs) - 9)
             self.rows.append([0.0, 0.0, 0.0, *turn, *turn, *none])
             self.misses.append(size * over)
-
-
-def _product(row: Row, change: Row) -> float:
-    product: float = sum(map(operator.mul, row, change))
-    return product
-
-
-def _moved(change: Row, way: Row, share: float) -> Row:
-    return [value + share * more for value, more in zip(change, way, strict=True)]
 
 
 class _Posed(NamedTuple):
