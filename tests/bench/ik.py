@@ -46,10 +46,9 @@ from cubeling.characters.ik.reaching.arms import (
     Effector,
     bend,
     effector_of,
-    natural_swivel,
-    swivel_of,
     to_vector,
 )
+from cubeling.characters.ik.reaching.swivel import natural_elbow, own_elbow
 from cubeling.characters.ik.solvers.chains import Chains
 from cubeling.characters.ik.solvers.measures import (
     ReachingProblem,
@@ -150,19 +149,18 @@ def elbow_misses(recorded: RecordedArm) -> dict[str, Array]:
     start = np.tile(rotations.IDENTITY, (len(recorded.wrists), 2, 1))
     arm, shoulder = recorded.arm, (0.0, 0.0, 0.0)
     natural: list[Vector] = []
-    shifted: list[Vector] = []
-    shift = None
-    for number, place in enumerate(recorded.wrists):
-        wrist, true = to_vector(place), to_vector(recorded.elbows[number])
-        swivel = natural_swivel(arm, shoulder, wrist, IDENTITY)
-        if shift is None:
-            shift = swivel_of(arm, shoulder, true, wrist, IDENTITY) - swivel
-        for turned, found in ((swivel, natural), (swivel + shift, shifted)):
-            found.append(bend(arm, recorded.wrist, shoulder, wrist, IDENTITY, turned).elbow)
+    kept: list[Vector] = []
+    first = to_vector(recorded.elbows[0]), to_vector(recorded.wrists[0])
+    own = own_elbow(arm, shoulder, *first, IDENTITY)
+    for place in recorded.wrists:
+        wrist = to_vector(place)
+        for each, found in ((None, natural), (own, kept)):
+            elbow = natural_elbow(arm, shoulder, wrist, IDENTITY, each)
+            found.append(bend(arm, recorded.wrist, shoulder, wrist, IDENTITY, elbow).elbow)
     chain = solve(chains, recorded.wrists, start).positions[:, 1]
     ways = {
         "arm": natural,
-        "arm, with the person's own swivel in the first frame": shifted,
+        "arm, as reached from the first frame": kept,
         f"chain ({DEFAULT}), from the first frame": chain,
     }
     return {

@@ -30,9 +30,6 @@ from cubeling.characters.skeleton.scalar_quaternions import (
     subtract,
 )
 
-SWIVEL_DEG = (-20.0, 70.0)
-"""Swivel of the elbow from the vertical plane outward, closed and open [degrees]."""
-
 NATURAL_SWIVEL_DEG: Vector = (16.0, 31.0, 8.0)
 """Swivel of an elbow that is not asked for [degrees]: at the shoulder, and for each arm length that
 the wrist is higher, and further ahead. Fitted to seven recorded people; a term for the wrist to the
@@ -50,10 +47,13 @@ CONE_RAD = math.radians(115.0)
 CONE_AXIS: Vector = (0.45, -0.25, 0.85)
 """That middle for a left hand, in the axes of the chest: outward, down and ahead."""
 
-SOFT_SHARE, STRAIGHT_SHARE = 0.991, 0.9991
-"""Extension of an arm ÷ its length from which on it stretches ever more slowly, and that of a
-straight one: an elbow snaps in the last of it, by 5° a centimetre and more ("soft IK", A. Nicholas,
-2008). What is missing is 2 mm of a person's arm at most."""
+SOFT_LACK, STRAIGHT_LACK = 0.024, 0.001
+"""What an arm lacks to its full length, as a part of it, from which on its elbow straightens no
+faster than there: it would snap in the last of the way, by 14° a centimetre and more. A hand at
+full stretch is 5 mm of a person's arm short of its place. The second is of an arm that may snap."""
+
+EASING_BEND = 0.8
+"""Bend of an elbow, ÷ that at `SOFT_LACK`, from which on it straightens ever more slowly."""
 
 _AHEAD: Vector = (-0.15, -0.35, 0.85)
 _ELBOW_AHEAD: Vector = (0.0, -0.9, -0.4)
@@ -220,43 +220,45 @@ def cone_axis(chest: Quaternion, sign: float) -> Vector:
     return rotate(chest, _CONE_AXES[sign])
 
 
+class Elbow(NamedTuple):
+    """How an elbow is to be."""
+
+    swivel: float
+    """About the line from the shoulder to the place [rad]."""
+
+    soft: float = STRAIGHT_LACK
+    """As `SOFT_LACK`."""
+
+
 def bend(
-    arm: Arm, effector: Effector, shoulder: Vector, target: Vector, chest: Quaternion, swivel: float
+    arm: Arm, effector: Effector, shoulder: Vector, target: Vector, chest: Quaternion, elbow: Elbow
 ) -> BentArm:
     """Return an arm that brings a point of its hand to a place, or as near as it gets.
 
     The law of cosines bends the elbow; it is swivelled about the line from the shoulder to the
-    place [rad] (Tolani, Goswami & Badler 2000, section 4). The wrist stays as at rest.
+    place (Tolani, Goswami & Badler 2000, section 4). The wrist stays as at rest.
 
     Parameters
     ----------
     chest
         Rotation of the chest from its rest.
     """
-    aim, distance = _aim(subtract(target, shoulder), arm, effector.fore, chest)
-    along, hinge, forearm = _bones(arm, effector.fore, aim, distance, chest, swivel)
+    aim, distance = aim_at(subtract(target, shoulder), arm, effector.fore, chest, elbow.soft)
+    along, hinge, forearm = _bones(arm, effector.fore, aim, distance, chest, elbow.swivel)
     upper = multiply(from_axes(along, hinge), arm.upper_from_frame)
     turn = multiply(from_axes(forearm, hinge), effector.fore_from_frame)
     moved = multiply(turn, conjugate(arm.rest_turns[0]))
     place = add(shoulder, scale_vector(aim, distance))
     wrist = subtract(place, rotate(moved, effector.offset))
-    elbow = add(shoulder, scale_vector(along, arm.upper))
-    return BentArm(upper, turn, multiply(moved, arm.rest_turns[1]), wrist, elbow)
-
-
-def natural_swivel(arm: Arm, shoulder: Vector, place: Vector, chest: Quaternion) -> float:
-    """Return the swivel of the elbow of a hand at a place [rad], if none is asked for."""
-    size = 1.0 / (arm.upper + arm.fore)
-    _, up, ahead = rotate(conjugate(chest), scale_vector(subtract(place, shoulder), size))
-    still, by_up, by_ahead = arm.natural_swivel
-    return still + by_up * min(max(up, -1.0), 1.0) + by_ahead * min(max(ahead, -1.0), 1.0)
+    hinge_at = add(shoulder, scale_vector(along, arm.upper))
+    return BentArm(upper, turn, multiply(moved, arm.rest_turns[1]), wrist, hinge_at)
 
 
 def bend_to_wrist(
     arm: Arm, wrist: Effector, shoulder: Vector, bent: BentArm, chest: Quaternion, swivel: float
 ) -> BentArm:
     """Return an arm whose wrist and hand stay where they are while its elbow is swivelled."""
-    moved = bend(arm, wrist, shoulder, bent.wrist, chest, swivel)
+    moved = bend(arm, wrist, shoulder, bent.wrist, chest, Elbow(swivel))
     return BentArm(moved.upper, moved.lower, bent.hand, moved.wrist, moved.elbow)
 
 
@@ -288,19 +290,32 @@ def turns_of(matrices: Array) -> Array:
     return rotations.from_matrix(matrices / np.where(sizes > 0.0, sizes, 1.0))
 
 
-def _aim(aim: Vector, arm: Arm, fore: float, chest: Quaternion) -> tuple[Vector, float]:
+def aim_at(
+    aim: Vector, arm: Arm, fore: float, chest: Quaternion, soft: float
+) -> tuple[Vector, float]:
     """Return the unit direction to a place and the distance that the arm takes of it [m]."""
     x, y, z = clamped_aim(aim, chest, arm.sign)
     distance = math.sqrt(x * x + y * y + z * z)
     if distance < 1e-6:
         (x, y, z), distance = cone_axis(chest, arm.sign), 1.0
-    upper, bent = arm.upper, math.cos(MAX_ELBOW_BEND_RAD)
+    upper, bent, full = arm.upper, math.cos(MAX_ELBOW_BEND_RAD), arm.upper + fore
     nearest = math.sqrt(upper * upper + fore * fore + 2.0 * upper * fore * bent)
-    taken, full = max(distance, nearest), upper + fore
-    if taken > SOFT_SHARE * full:
-        room = (STRAIGHT_SHARE - SOFT_SHARE) * full
-        taken = SOFT_SHARE * full + room * (1.0 - math.exp((SOFT_SHARE * full - taken) / room))
+    taken = _soft_extension(max(distance, nearest) / full, soft) * full
     return (x / distance, y / distance, z / distance), taken
+
+
+def _soft_extension(extension: float, soft: float) -> float:
+    """Return how far an arm stretches for a place, both ÷ its length.
+
+    The bend of an elbow is as the root of what the arm lacks; it goes on along its tangent, then
+    along a hyperbola, so that what is far is pointed at with a straight arm.
+    """
+    if extension <= 1.0 - soft:
+        return extension
+    bend = 1.0 - 0.5 * (extension - 1.0 + soft) / soft
+    if bend < EASING_BEND:
+        bend = EASING_BEND * EASING_BEND / (2.0 * EASING_BEND - bend)
+    return 1.0 - soft * bend * bend
 
 
 def _bones(
@@ -311,7 +326,7 @@ def _bones(
     cosine = (upper * upper + distance * distance - fore * fore) / (2.0 * upper * distance)
     cosine = min(max(cosine, -1.0), 1.0)
     sine = math.sqrt(1.0 - cosine * cosine)
-    (ux, uy, uz), (vx, vy, vz) = _swivel_axes(arm, aim, chest)
+    (ux, uy, uz), (vx, vy, vz) = swivel_axes(arm, aim, chest)
     c, s = math.cos(swivel), math.sin(swivel)
     ex, ey, ez = c * ux + s * vx, c * uy + s * vy, c * uz + s * vz
     nx, ny, nz = aim
@@ -326,7 +341,7 @@ def _bones(
     return along, cross((ex, ey, ez), aim), forearm
 
 
-def _swivel_axes(arm: Arm, aim: Vector, chest: Quaternion) -> tuple[Vector, Vector]:
+def swivel_axes(arm: Arm, aim: Vector, chest: Quaternion) -> tuple[Vector, Vector]:
     """Return where an elbow hangs without swivel, and where it is swivelled to."""
     ahead, elbow = _POLES[arm.sign]
     hanging = rotate(between(ahead, rotate(conjugate(chest), aim)), elbow)
@@ -349,14 +364,6 @@ def scale_vector(vector: Vector, scale: float) -> Vector:
     return vector[0] * scale, vector[1] * scale, vector[2] * scale
 
 
-def _unit(vector: Vector) -> Vector:
-    return scale_vector(vector, 1.0 / length(vector))
-
-
-def _perpendicular(vector: Vector, axis: Vector) -> Vector:
-    return _unit(subtract(vector, scale_vector(axis, dot(vector, axis))))
-
-
 def to_vector(values: Sequence[float] | Array) -> Vector:
     """Return three numbers as a vector."""
     x, y, z = values
@@ -369,12 +376,12 @@ def to_quaternion(values: Array) -> Quaternion:
     return x, y, z, w
 
 
-def swivel_of(arm: Arm, shoulder: Vector, elbow: Vector, wrist: Vector, chest: Quaternion) -> float:
-    """Return the swivel of an elbow outward [rad]."""
-    aim, _ = _aim(subtract(wrist, shoulder), arm, arm.fore, chest)
-    down, outward = _swivel_axes(arm, aim, chest)
-    side = subtract(elbow, shoulder)
-    return math.atan2(dot(side, outward), dot(side, down))
+def _unit(vector: Vector) -> Vector:
+    return scale_vector(vector, 1.0 / length(vector))
+
+
+def _perpendicular(vector: Vector, axis: Vector) -> Vector:
+    return _unit(subtract(vector, scale_vector(axis, dot(vector, axis))))
 
 
 def _mirror(vector: Vector, sign: float) -> Vector:

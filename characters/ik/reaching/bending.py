@@ -4,7 +4,6 @@ import math
 from typing import NamedTuple
 
 from cubeling.characters.ik.reaching.arms import (
-    SWIVEL_DEG,
     Arm,
     BentArm,
     Effector,
@@ -12,10 +11,14 @@ from cubeling.characters.ik.reaching.arms import (
     bend_to_wrist,
     effector_of,
     from_axes,
-    natural_swivel,
     scale_vector,
-    swivel_of,
     to_vector,
+)
+from cubeling.characters.ik.reaching.swivel import (
+    SWIVEL_DEG,
+    OwnElbow,
+    natural_elbow,
+    swivel_of,
 )
 from cubeling.characters.ik.reaching.targets import HandTarget
 from cubeling.characters.skeleton.scalar_quaternions import (
@@ -82,6 +85,9 @@ class HandOnItsWay(NamedTuple):
     swung: Quaternion
     """How the collarbone has moved."""
 
+    own: OwnElbow | None = None
+    """What its elbow keeps of the pose."""
+
 
 def passive_shoulder(
     base: Vector, shoulder: Vector, place: Vector, full: float, power: float
@@ -120,7 +126,8 @@ def point_finger(hand: HandOnItsWay, shoulder: Vector, chest: Quaternion) -> Ben
     far = length(aim)
     scale = min(1.0, POINT_EXTENSION * (arm.upper + effector.fore) / max(far, 1e-9))
     tip = add(shoulder, (aim[0] * scale, aim[1] * scale, aim[2] * scale))
-    bent = bend(arm, effector, shoulder, tip, chest, natural_swivel(arm, shoulder, tip, chest))
+    elbow = natural_elbow(arm, shoulder, tip, chest, hand.own)
+    bent = bend(arm, effector, shoulder, tip, chest, elbow)
     turn, back = bent.hand, conjugate(arm.rest_turns[1])
     if effector.finger is None:
         return bent
@@ -141,11 +148,11 @@ def orient_hand(
     """
     arm, offset = hand.arm, hand.effector.offset
     back = conjugate(arm.rest_turns[1])
-    swivel = natural_swivel(arm, shoulder, hand.place, chest)
-    natural = bend(arm, hand.effector, shoulder, hand.place, chest, swivel)
+    elbow = natural_elbow(arm, shoulder, hand.place, chest, hand.own)
+    natural = bend(arm, hand.effector, shoulder, hand.place, chest, elbow)
     turn = _facing_rotation(hand, natural.hand)
     place = subtract(hand.place, rotate(multiply(turn, back), offset))
-    bent = bend(arm, wrist, shoulder, place, chest, swivel)
+    bent = bend(arm, wrist, shoulder, place, chest, elbow)
     wanted = multiply(turn, conjugate(bent.hand))
     allowed = _limit_turn(arm, bent, wanted)
     short = length(subtract(bent.wrist, place))
@@ -156,7 +163,7 @@ def orient_hand(
     from_rest = multiply(bent.lower, conjugate(arm.rest_turns[0]))
     moved = rotate(conjugate(from_rest), rotate(multiply(turn, back), offset))
     again = effector_of(arm, add(arm.wrist, moved))
-    held = bend(arm, again, shoulder, hand.place, chest, swivel)
+    held = bend(arm, again, shoulder, hand.place, chest, elbow)
     follows = multiply(held.lower, conjugate(bent.lower))
     return held._replace(hand=multiply(follows, turn))
 

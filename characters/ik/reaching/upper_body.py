@@ -21,9 +21,7 @@ from cubeling.characters.ik.reaching.arms import (
     bend_to_wrist,
     effector_of,
     find_arm,
-    natural_swivel,
     scale_vector,
-    swivel_of,
     to_vector,
 )
 from cubeling.characters.ik.reaching.bending import (
@@ -37,6 +35,7 @@ from cubeling.characters.ik.reaching.bending import (
 )
 from cubeling.characters.ik.reaching.hand_shapes import HandShapes
 from cubeling.characters.ik.reaching.kinematics import Frames, UpperBodyKinematics
+from cubeling.characters.ik.reaching.swivel import natural_elbow, own_elbow, swivel_of
 from cubeling.characters.ik.reaching.targets import (
     NEUTRAL_REACH,
     SHAPE_OF_KIND,
@@ -147,7 +146,7 @@ class UpperBody:
         if not wanted:
             return ReachedPose(pose, 0.0)
         holds = self._four_legs and len(wanted) < len(self.arms)
-        frames = self.kinematics.frames(pose, "arms" if holds else "upper")
+        frames = self.kinematics.frames(pose, "arms")
         torso = self.kinematics.torso(frames)
         hands = [self.start_hand(frames, arm, target, style) for arm, target in wanted]
         neutral = ReachStyle(power=style.power)
@@ -214,6 +213,8 @@ class UpperBody:
         `turns` are those of the torso without openness, for which wrists are placed, and with it.
         """
         neutral, turned = turns
+        if not self._four_legs:
+            hands = [self._with_own_elbow(hand, frames, torso.chest) for hand in hands]
         bearers = [_bearer(torso, hand, neutral) for hand in hands]
         bent = [self._bend(*each) for each in zip(hands, bearers, strict=True)]
         if style.openness != NEUTRAL_REACH.openness:
@@ -244,6 +245,14 @@ class UpperBody:
             shoulder = add(base, rotate(swung, subtract(shoulder, base)))
         return HandOnItsWay(arm, target, effector, (x, y, z), shoulder, swung)
 
+    def _with_own_elbow(
+        self, hand: HandOnItsWay, frames: Frames, chest: Quaternion
+    ) -> HandOnItsWay:
+        """Return a hand whose elbow keeps what it has of its own in the pose of the frames."""
+        number, arm = self.kinematics.number, hand.arm
+        places = (frames.places[number[joint]] for joint in arm.joints[1:])
+        return hand._replace(own=own_elbow(arm, *places, chest))
+
     def _torso_turn(
         self, torso: PlacedTorso, hands: Sequence[HandOnItsWay], style: ReachStyle
     ) -> tuple[Vector, float]:
@@ -266,8 +275,8 @@ class UpperBody:
         if target.kind == "point":
             return twist_forearm(arm, point_finger(hand, *bearer))
         if target.palm is None and target.fingers is None:
-            swivel = natural_swivel(arm, bearer.shoulder, hand.place, bearer.chest)
-            return bend(arm, hand.effector, bearer.shoulder, hand.place, bearer.chest, swivel)
+            elbow = natural_elbow(arm, bearer.shoulder, hand.place, bearer.chest, hand.own)
+            return bend(arm, hand.effector, bearer.shoulder, hand.place, bearer.chest, elbow)
         return twist_forearm(arm, orient_hand(hand, self._wrists[arm.hand.side], *bearer))
 
     def _write(
