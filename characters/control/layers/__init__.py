@@ -56,12 +56,16 @@ FOLLOWING_LAYERS = Registry[LayerFactory](
 def layers_of(character: Character) -> tuple[LayerFactory, ...]:
     """Return the layers of an `Animator` by default.
 
-    What an action moves along comes first; last come joints that follow others, and what swings.
+    What gestures and actions move along follows them; last come joints that follow others, and
+    what swings.
     """
     asked = {name: (BODY_LAYERS[name],) for name in character.body_layers}
+    after_clips = list(LIVELINESS).index("clips") + 1
     return (
+        *FOOT_LAYERS,
+        *LIVELINESS_LAYERS[:after_clips],
         *asked.get("dependent_joints", ()),
-        *DEFAULT_LAYERS,
+        *LIVELINESS_LAYERS[after_clips:],
         *asked.get("self_collision", ()),
         *(FOLLOWING_LAYERS[name] for name in FOLLOWING_LAYERS if getattr(character, name)),
     )

@@ -1,6 +1,5 @@
 """Layers for characters that play motions of others, and gestures of few joints."""
 
-import numpy as np
 
 from cubeling.characters.body.capsules import CapsuleBody
 from cubeling.characters.body.dependent_joints import DependentJoints
@@ -10,7 +9,14 @@ from cubeling.characters.errors import CharacterError
 from cubeling.characters.model.character import Character
 from cubeling.characters.model.standing import idle_clips
 from cubeling.characters.skeleton.pose import Pose
+from cubeling.characters.smoothing import SpringValue
 from cubeling.characters.synthesis.idle.posture_space import PostureVectors
+
+JOIN_LAG_S = 0.3
+"""Lag with which a body joins in a gesture [s]."""
+
+LEAST_SHARE = 1e-4
+"""Share of joining in below which it is none."""
 
 
 def dependent_joints_of(character: Character) -> DependentJoints:
@@ -61,13 +67,21 @@ class SelfCollisionLayer:
 
 
 class DependentJointsLayer:
-    """Lets spine, shoulders and head join in actions; see `dependent_joints_of`."""
+    """Lets spine, shoulders and head join in actions and gestures; see `dependent_joints_of`."""
 
     def __init__(self, character: Character, seed: int = 0) -> None:
         self._filter = dependent_joints_of(character)
+        self._gesturing = SpringValue(0.0)
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
-        """Return the pose with what the action moves along; as it was without an action."""
-        if not context.frame.acting:
-            return pose
-        return self._filter.move(pose, float(np.clip(1.0 - context.rest, 0.0, 1.0)))
+        """Return the pose with what they move along; as it was without an action or gesture."""
+        behaviour, now = context.command.behaviour, context.command.timestamp
+        gestures = () if behaviour is None else behaviour.gestures
+        times = [each.times for each in gestures]
+        under_way = any(
+            each.start <= now and (each.end is None or now < each.end) for each in times
+        )
+        share = self._gesturing.follow(float(under_way), context.elapsed, JOIN_LAG_S)
+        if context.frame.acting:
+            share = max(share, 1.0 - context.rest)
+        return self._filter.move(pose, min(share, 1.0)) if share > LEAST_SHARE else pose

@@ -8,6 +8,9 @@ import pytest
 from hypothesis import given, strategies as st
 
 from cubeling.characters import Animator, Character, CharacterError, Pose
+from cubeling.characters.behaviour.gestures.collection import GestureCollection
+from cubeling.characters.behaviour.gestures.planning import natural_times
+from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent
 from cubeling.characters.body.capsules import CapsuleBody, segment_distances
 from cubeling.characters.body.dependent_joints import DependentJoints, fade
 from cubeling.characters.body.self_collision import SafeRanges, damp
@@ -164,3 +167,21 @@ def test_layers_for_people_are_refused_to_others(name: str) -> None:
     asking = replace(Character.load("vleo"), body_layers=(name,))
     with pytest.raises(CharacterError, match=r"vleo: .* a person with"):
         Animator(asking)
+
+
+def test_dependent_joints_join_in_gestures_and_leave_legs_alone(human: Character) -> None:
+    wave = GestureCollection.load_bundled().get("WAVE")
+    intent = GestureIntent("wave", wave, natural_times(wave, 1.0), "right")
+    asked = BehaviourIntent(gestures=(intent,))
+    on = replace(human, body_layers=("dependent_joints",))
+    frames = []
+    for character in (human, on):
+        animator = Animator(character)
+        frames.append([animator.update(command(n / 30, behaviour=asked)).pose for n in range(90)])
+    off, joined = (np.stack([pose.rotations for pose in poses]) for poses in frames)
+    turned = np.degrees(2.0 * np.arccos(np.abs(np.vecdot(off, joined)).clip(0.0, 1.0)))
+    assert turned[0].max() < 0.01
+    trunk = [human.anatomy.joints[part] for part in ("spine", "chest", "neck", "head")]
+    assert turned[:, trunk].max() > 2.0
+    legs = [joint for part, joint in human.anatomy.joints.items() if "Leg" in part]
+    assert turned[:, legs].max() < 0.01
