@@ -29,10 +29,10 @@ class OpenedContent:
     """What `WebServer.open` has opened."""
 
     content: WebContent
-    """What is served."""
+    """Answers for all that is below the path."""
 
     token: Token
-    """What lets in."""
+    """Requests have to tell it."""
 
 
 async def exchange(request: web.BaseRequest, content: WebContent, place: str) -> web.StreamResponse:

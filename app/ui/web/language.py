@@ -24,7 +24,7 @@ class Words:
     """Some words for a page."""
 
     words: str
-    """What is said."""
+    """In a language, to be shown as they are."""
 
     language: str
     """Its code; "" where nobody knows, as for words of a scenario of the player's own."""

@@ -129,6 +129,11 @@ def test_only_who_knows_the_token_is_let_in():
             async with session.get(f"{root}/") as answer:
                 assert answer.status == 200
                 assert "frame-ancestors 'none'" in answer.headers["Content-Security-Policy"]
+            async with session.get(
+                f"{root}/token", headers={"Authorization": f"Bearer {TOKEN.text}"}
+            ) as answer:
+                assert answer.status == 204
+                assert answer.headers["Connection"] == "close", "each look has its own connection"
             for path in ("/etc/passwd", "/page.js", "/socket", "/../server.py"):
                 async with session.get(root + path) as answer:
                     assert answer.status in (403, 404)
