@@ -260,9 +260,9 @@ class WebServer:
             return web.Response(status=404, text="there is no such page\n")
         if not self._tells(request, opened.token):
             return web.Response(status=403, text=REFUSED)
-        found = await exchange(request, opened.content, place)
+        reply = await exchange(request, opened.content, place)
         self._acceptor.admit(request.protocol)
-        return found
+        return reply
 
     def _tells(self, request: web.BaseRequest, token: Token) -> bool:
         """Return whether a request tells a token."""

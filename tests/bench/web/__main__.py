@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from cubeling.app.ui.web.page import MAX_PAGE_BYTES
+from tests.bench.web.back import back
 from tests.bench.web.camera import write_camera
 from tests.bench.web.chromium import chromium
 from tests.bench.web.faulty_proxy import FaultyProxy
@@ -100,6 +101,7 @@ SCENES: dict[str, Callable[[Path], Coroutine[Any, Any, None]]] = {
     "start": start,
     "hostile": hostile,
     "line": line,
+    "back": back,
     "firefox": firefox,
     "size": size,
     "picture": picture,
