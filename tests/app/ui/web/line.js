@@ -73,7 +73,7 @@ async function simulate(source, {kind, begin, seconds, latency, trips, answers_s
   const heard = message => { if (time >= end && message.at !== undefined && first === Infinity) first = time; };
   for (const each of ["welcome", "tick", "picture"]) page.HEARD[each] = heard;
   page.check();
-  while (events.length && time < end + 5 && first === Infinity) {
+  while (events.length && time < end + 10 && first === Infinity) {
     let next = events[0];
     for (const each of events) if (each.when < next.when || (each.when === next.when && each.order < next.order)) next = each;
     drop(next);
