@@ -5,8 +5,6 @@ import re
 import time
 from contextlib import asynccontextmanager, closing
 from dataclasses import dataclass
-from types import SimpleNamespace
-from typing import Any
 
 import aiohttp
 import cv2
@@ -19,7 +17,6 @@ from cubeling.app.ui.web.content import MAX_SENT_BYTES
 from cubeling.app.ui.web.language import English
 from cubeling.app.ui.web.messages import PICTURE, SOUND, pack, read_said, unpack
 from cubeling.app.ui.web.page import MAX_PAGE_BYTES, document
-from cubeling.app.ui.web.place import CAMERA_QUIET_S, CameraPlace
 from cubeling.app.ui.web.server import LOOPBACK, WebServer
 from tests.bench.web.sizes import pages, sizes
 
@@ -204,33 +201,6 @@ def test_a_phone_may_take_the_place_of_another_and_a_window_cannot():
     serve(use)
 
 
-def test_a_recording_keeps_its_camera_whoever_asks():
-    async def use(server):
-        async with page_of(server, "first") as first, page_of(server, "second") as second:
-            await first.say(do="camera", name="ab12-back")
-            await first.see(1, JPEG)
-            await first.told("got")
-            server.keeps_camera = True
-            refused = "A recording keeps its camera: end it first"
-            await second.say(do="camera", name="cd34-back", take=True)
-            assert (await second.told("words"))["said"]["words"] == refused
-            await first.say(do="camera", name="ab12-front")
-            assert (await first.told("words"))["said"]["words"] == refused
-            await first.see(2, JPEG)
-            await first.told("got")
-            assert server.feed.number == 1, "of the other side of the phone"
-            await first.say(do="camera", name="ab12-back")
-            await first.see(3, JPEG)
-            await first.told("got")
-            assert server.feed.number == 2
-            await second.say(do="camera", name="ab12-back", take=True)  # its page was opened again
-            await second.see(4, JPEG)
-            await second.told("got")
-            assert server.feed.number == 3
-
-    serve(use)
-
-
 def test_a_page_that_is_connected_anew_keeps_its_place_unless_it_is_another_thing_now():
     async def use(server):
         async with page_of(server) as before:
@@ -247,32 +217,6 @@ def test_a_page_that_is_connected_anew_keeps_its_place_unless_it_is_another_thin
                     assert (await window.told("place"))["camera"] == "free"
 
     serve(use)
-
-
-def test_a_camera_that_sends_nothing_gives_its_place_up():
-    now = [100.0]
-    places: dict[str, list[str]] = {"first": [], "second": []}
-    pages: Any = [
-        SimpleNamespace(
-            page=name, role="play", tell=lambda do, camera, name=name: places[name].append(camera)
-        )
-        for name in places
-    ]
-    first, second = pages
-    place = CameraPlace(lambda: now[0])
-    place.join(first)
-    place.join(second)
-    assert place.ask(first, take=False)
-    for _ in range(3):
-        now[0] += 0.9 * CAMERA_QUIET_S
-        assert place.saw(first)
-        place.check()
-    assert not place.saw(second)
-    now[0] += 1.1 * CAMERA_QUIET_S
-    place.check()
-    assert place.ask(second, take=False)
-    assert places == {"first": ["free", "yours", "free", "other"],
-                      "second": ["free", "other", "free", "yours"]}  # fmt: skip
 
 
 class Desk:
