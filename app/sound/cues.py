@@ -28,7 +28,7 @@ and the weight below which it may sound again. "mwah" begins before the lips par
 GAIT_STATES = ("walk", "run")
 """States of a character in which all feet leave the ground without a leap."""
 
-NO_ACTIONS = ("idle", *GAIT_STATES)
+NO_ACTIONS = ("idle", "hop", *GAIT_STATES)
 """States of a character that are no actions."""
 
 LEAP_CLEARANCE = 0.035

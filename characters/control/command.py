@@ -161,7 +161,7 @@ class PosedCharacter:
     """Whether to draw it."""
 
     state: str
-    """Name of the state it is in: "idle", "walk", "run", "kiss" …"""
+    """Name of the state it is in: "idle", "walk", "run", "hop", "kiss" …"""
 
     speed: float
     """The Speed that was used, 0…5."""

@@ -221,7 +221,7 @@ class Summary:
         table.add_row("character", _timeline(self.states, duration))
         if self.hopped:
             make = "[cyan]cubeling character locomotion[/] gives it a gait"
-            table.add_row("", f"it hopped, as it has no clips to walk with: {make}")
+            table.add_row("", f"it hops, as it has no clips to walk with: {make}")
         for name, figures in self.robots.items():
             figures.fill(table, name if len(self.robots) > 1 else "robot", duration)
         table.add_row(

@@ -300,7 +300,7 @@ EXPORT_TABLES = (
         "/character/pose",
         (
             field("visible", "", "1 if the character is drawn"),
-            field("state", "", "idle, walk, run, or the action"),
+            field("state", "", "idle, walk, run, hop, or the action"),
             field("speed", "", "AvatAR's Speed that is used, 0 to 5"),
             field("weight", "", "Intensity in use, −1 to 1"),
             *vector(

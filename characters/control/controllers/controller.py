@@ -18,7 +18,7 @@ class ControllerFrame:
     """The pose of its clips, with the root in place."""
 
     state: str
-    """What the character is doing: "idle", "walk", "run", or the name of an action."""
+    """What the character is doing: "idle", "walk", "run", "hop", or the name of an action."""
 
     place: RootDelta
     """Where it stands on the table [m] and where it faces [rad]."""

@@ -77,11 +77,11 @@ class InPlaceController:
         playing = elapsed * tempo if self._state == "idle" else elapsed
         now, self._time = self._time, self._time + playing
         self._act(command, elapsed, now)
-        self._move(command.locomotion or LocomotionIntent(), elapsed)
+        hops = self._move(command.locomotion or LocomotionIntent(), elapsed)
         action = self._actions.get(self._state)
         return ControllerFrame(
             self._pose(),
-            self._state,
+            "hop" if hops and action is None else self._state,
             self._place,
             height=self._height,
             weight=self._weight,
@@ -110,8 +110,8 @@ class InPlaceController:
         if name != "idle":
             self._actions[name].set_weight(self._weight, now - self._machine.entered)
 
-    def _move(self, going: LocomotionIntent, elapsed: float) -> None:
-        """Hop to the target and turn to the point to be faced."""
+    def _move(self, going: LocomotionIntent, elapsed: float) -> bool:
+        """Hop to the target and turn to the point to be faced; return whether it hops."""
         target = self._place
         if going.target is not None:
             target = RootDelta(float(going.target[0]), float(going.target[1]), self._place.yaw)
@@ -125,10 +125,11 @@ class InPlaceController:
             self._place, self._height = self._hop.at()
             if self._hop.time >= HOP_TIME_S:
                 self._hop = None
-            return
+            return True
         bearing = _bearing(self._place, going)
         turn, self._turn_speed = damped_spring(-bearing, self._turn_speed, 0.0, elapsed, TURN_LAG_S)
         self._place = RootDelta(self._place.x, self._place.z, self._place.yaw + bearing + turn)
+        return False
 
     def _start_hop(self, target: RootDelta, going: LocomotionIntent) -> _Hop | None:
         """Return a hop on the way to the target, if it is worth one."""

@@ -27,7 +27,7 @@ FADE = FadeCurve(0.25, 0.3)
 LEAVE_S = 0.3
 """How long a clip takes to go that is left out before its end [s]."""
 
-HANDS_FREE = {"idle": 1.0, "walk": 0.8, "run": 0.3}
+HANDS_FREE = {"idle": 1.0, "hop": 1.0, "walk": 0.8, "run": 0.3}
 """Share of clips that is shown while a character does something; none in its actions."""
 
 FREE_LAG_S = 0.4

@@ -28,7 +28,7 @@ CUT_S = 0.3
 JOIN_S = 0.15
 """How long hands take to join in a speech that has begun before [s]."""
 
-HANDS_FREE = {"idle": 1.0, "walk": 0.8, "run": 0.3}
+HANDS_FREE = {"idle": 1.0, "hop": 1.0, "walk": 0.8, "run": 0.3}
 """Share of gestures that is shown while a character does something; none in its actions."""
 
 FREE_LAG_S = 0.4

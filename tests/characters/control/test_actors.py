@@ -78,6 +78,8 @@ def test_it_starts_on_its_target_and_hops_to_another(character):
     assert heights.max() > 0.005
     assert heights[-1] == 0.0
     assert (heights >= 0).all()
+    assert {frame.state for frame in frames if frame.table_from_character[1, 3] > 0} == {"hop"}
+    assert frames[-1].state == "idle"
     assert np.linalg.norm(np.diff(ways, axis=0), axis=1).max() < 0.02
 
 

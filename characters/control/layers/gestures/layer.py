@@ -19,7 +19,7 @@ FADE_S = 0.3
 ON_TIME_S = 0.05
 """A gesture that is first heard of so long after its start need not join in: a frame [s]."""
 
-HANDS_FREE = {"idle": 1.0, "walk": 1.0, "run": 0.5}
+HANDS_FREE = {"idle": 1.0, "hop": 1.0, "walk": 1.0, "run": 0.5}
 """Share of gestures that is shown while a character does something; none in its actions."""
 
 FREE_LAG_S = 0.4
