@@ -1,10 +1,12 @@
 """Sessions with every channel, for the commands that read them."""
 
+import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import typer
 from rich.console import Console
 
 
@@ -14,8 +16,9 @@ def complete_session(
 ) -> Iterator[Path]:
     """Yield a session with every channel: the file itself, or a temporary one if it lacks some.
 
-    What it lacks is computed first, with a progress bar on standard error; what its pictures tell
-    of hand, light and softness only with `appearance`, as it takes longer.
+    What it lacks is computed first, with a line and a progress bar on standard error; what its
+    pictures tell of hand, light and softness only with `appearance`, as it takes longer. It is
+    not kept: the pictures of a recording should lie only where their owner put them.
 
     Raises
     ------
@@ -35,6 +38,12 @@ def complete_session(
     from cubeling.app.commands.play.progress import show_progress
     from cubeling.app.running.computing import compute_channels
 
+    kept = f"cubeling replay {shlex.quote(str(path))} --no-pictures --record FULL.mcap"
+    typer.echo(
+        f"{path.name} holds only what came in: computing the rest, for about as long as it lasts "
+        f"({info.duration:.0f} s). To do so once: {kept}",
+        err=True,
+    )
     with TemporaryDirectory(prefix="cubeling-") as folder:
         complete = Path(folder) / f"{path.stem}.mcap"
         with show_progress(

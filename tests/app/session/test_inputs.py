@@ -98,8 +98,11 @@ def test_from_what_came_in_the_same_session_is_computed(full, tmp_path, capsys):
         assert complete.name == full.name
         assert list(messages(complete)) == list(messages(full))
     assert not complete.parent.exists()
+    said = capsys.readouterr().err.splitlines()
+    assert said[0].startswith("full.mcap holds only what came in: computing the rest")
     with complete_session(full) as complete:
         assert complete == full
+    assert capsys.readouterr().err == ""
 
 
 def test_inputs_are_read_from_where_an_older_session_has_them(tmp_path):
