@@ -39,7 +39,7 @@ def table(roster: Roster, now: float) -> Table:
 
 def _player(entry: RosterEntry) -> tuple[str, str, str]:
     emotion, action = entry.messages.get("emotion"), entry.messages.get("action")
-    shown = "" if emotion is None else f"{emotion.label or ''} {emotion.valence:+.2f}".strip()
+    shown = "" if emotion is None else f"{emotion.label or ''} {emotion.valence:+z.2f}".strip()
     return "", shown, "" if action is None else f"{action.name} (number {action.number})"
 
 
@@ -50,9 +50,9 @@ def _robot(entry: RosterEntry) -> tuple[str, str, str]:
     link = state.link if state.battery is None else f"{state.link}, {state.battery:.0%}"
     emotion = ""
     if state.observed is not None:
-        emotion = f"{state.label or ''} {state.observed[0]:+.2f}"
+        emotion = f"{state.label or ''} {state.observed[0]:+z.2f}"
     elif state.commanded is not None:  # it does not report what it shows
-        emotion = f"commanded {state.commanded[0]:+.2f}"
+        emotion = f"commanded {state.commanded[0]:+z.2f}"
     player = f"with {state.player}" if state.player else ""
     action = ", ".join(word for word in (state.motion or "", player) if word)
     return link, emotion.strip(), action
@@ -75,12 +75,12 @@ def _content(kind: str, message: Any) -> str:
             return f"action {message.number}, {message.name}, weight {message.weight:.2f}"
         case EmotionMessage():
             label = f" {message.label}" if message.label else ""
-            return f"emotion{label} {message.valence:+.2f} {message.arousal:+.2f}"
+            return f"emotion{label} {message.valence:+z.2f} {message.arousal:+z.2f}"
         case AckMessage():
             taken = [f"{place} {number}" for place, (_, number) in message.players.items()]
             return f"taken: {', '.join(taken) or 'nothing yet'}"
         case StateMessage():
-            shown = "nothing" if message.observed is None else f"{message.observed[0]:+.2f}"
+            shown = "nothing" if message.observed is None else f"{message.observed[0]:+z.2f}"
             return f"{message.link}, shows {message.label or ''} {shown}".replace("  ", " ")
         case _:
             return kind

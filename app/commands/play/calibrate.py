@@ -181,8 +181,8 @@ def _report_check(
     x, y = verdict.centre_change
     console.print(
         f"[bold {color}]{word}[/]  {escape(str(path))}: focal length "
-        f"{100 * verdict.focal_change:+.2f} % (± {200 * verdict.focal_spread:.2f} %), middle "
-        f"{x:+.1f} {y:+.1f} px, edges off by {verdict.residual:.3f} px "
+        f"{100 * verdict.focal_change:+z.2f} % (± {200 * verdict.focal_spread:.2f} %), middle "
+        f"{x:+z.1f} {y:+z.1f} px, edges off by {verdict.residual:.3f} px "
         f"(at best {verdict.best_residual:.3f} px), from {quantity(verdict.views, 'view')}"
     )
     if verdict.degraded:

@@ -46,7 +46,7 @@ def _robot(name: str, view: RobotView) -> Fact:
 
 
 def _words(label: str, emotion: Emotion) -> str:
-    return f"{label} ({emotion.valence:+.2f}, {emotion.arousal:+.2f})"
+    return f"{label} ({emotion.valence:+z.2f}, {emotion.arousal:+z.2f})"
 
 
 EMOTION = Panel("emotion", "Emotion", 340.0, content)

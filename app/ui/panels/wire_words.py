@@ -136,7 +136,7 @@ def _state(message: m.State, name: Names) -> str:
 
 def _emotion(message: m.Express | m.State) -> str:
     """Return valence and arousal."""
-    return f"({message.valence:+.2f}, {message.arousal:+.2f})"
+    return f"({message.valence:+z.2f}, {message.arousal:+z.2f})"
 
 
 WORDS: dict[type[Any], Callable[[Any, Names], str]] = {

@@ -184,7 +184,9 @@ def clock_read_before_waiting_bytes(probe: Probe) -> None:
     probe.open_session()
     probe.beat("HELLO")
     if not probe.hold_up(SILENCE_S):
-        raise NotApplicableError("only a simulated robot can be held up")
+        raise NotApplicableError(
+            "needs virtual time, which no robot on a port has; see docs/conformance.md"
+        )
     # Nothing is read before, so that the robot finds bytes and time at once.
     probe.write(probe.frame(m.Beat(probe.next_beat())), keep=True)
     probe.expect(m.Gone, f"{_SILENCE_MS} ms in which the robot did not run, and a BEAT meanwhile")

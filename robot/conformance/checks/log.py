@@ -62,7 +62,7 @@ def clock_runs_true(probe: Probe) -> str:
     first = min(one for time, one in late if time <= begin + END_S)
     last = min(one for time, one in late if time >= end - END_S)
     span = end - begin
-    remark = f"{1000 * (first - last):+.0f} ms in {span:.0f} s"
+    remark = f"{1000 * (first - last):+z.0f} ms in {span:.0f} s"
     if abs(first - last) > timing.CLOCK_TOLERANCE * span + TIMING_SLACK_S:
         raise CheckFailed(
             f"a clock that is right to {1e6 * timing.CLOCK_TOLERANCE:.0f} ppm", remark

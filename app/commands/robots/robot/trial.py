@@ -174,7 +174,7 @@ def _table(telemetry: Telemetry) -> Table:
     table.add_row("motion", motion, "sound", sound)
     clock = telemetry.clock
     if clock is not None:
-        drift, error = f"{1e6 * clock.drift:+.0f} ppm", f"{1000 * clock.error:.1f} ms"
+        drift, error = f"{1e6 * clock.drift:+z.0f} ppm", f"{1000 * clock.error:.1f} ms"
         table.add_row("its clock drifts by", drift, "known within", error)
     counts = telemetry.counts
     table.add_row("retries", str(counts.retries), "damaged", str(counts.crc_errors))
@@ -182,4 +182,4 @@ def _table(telemetry: Telemetry) -> Table:
 
 
 def _point(emotion: Emotion | None) -> str:
-    return "" if emotion is None else f"{emotion.valence:+.2f} {emotion.arousal:+.2f}"
+    return "" if emotion is None else f"{emotion.valence:+z.2f} {emotion.arousal:+z.2f}"
