@@ -46,7 +46,9 @@ def figure_differences(first: SessionFigures, second: SessionFigures) -> Iterato
     """Yield which lines of their summaries differ, and what else was played differently."""
     summaries = [dict(lines_of(each)) for each in (first, second)]
     yield from _differences(*summaries, leave_out=NAMED_LINES)
-    played = [{PLAYED_WORDS.get(k, k): v for k, v in each.played.items()} for each in (first, second)]
+    played = [
+        {PLAYED_WORDS.get(k, k): v for k, v in each.played.items()} for each in (first, second)
+    ]
     # The summaries have said these.
     yield from _differences(*played, leave_out=("scenario", "character", "personality"))
     begun = [{"begun (UTC)": each.info.clock_zero} for each in (first, second)]
