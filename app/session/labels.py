@@ -54,6 +54,15 @@ class Mark:
             return cls(at_s, kind.strip(), name.strip())
         return cls(at_s, text, "") if text.isdigit() else cls(at_s, "", text.strip())
 
+    @property
+    def words(self) -> str:
+        """Its type and what it is, as `of` takes them; "marked" without either.
+
+        >>> Mark(1.5, "error", "the cube fell").words
+        'error: the cube fell'
+        """
+        return ": ".join(filter(None, (self.kind, self.name))) or "marked"
+
 
 @dataclass(frozen=True)
 class SessionLabels:

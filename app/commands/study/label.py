@@ -52,6 +52,5 @@ def label(
         for name in given:
             table.add_row(name, Text(getattr(labels, name) or "–"))
         for moment in file.marks:
-            words = ": ".join(filter(None, (moment.kind, moment.name)))
-            table.add_row(f"{moment.at_s:.1f} s", Text(words or "marked"))
+            table.add_row(f"{moment.at_s:.1f} s", Text(moment.words))
         console.print(table)

@@ -51,7 +51,7 @@ def lines_of(figures: SessionFigures) -> list[tuple[str, str]]:
         ("refused", ", ".join(link.reasons)),
         ("events", _counts(figures.events)),
         ("wizard", _wizard_line(figures)),
-        ("marks", ", ".join(f"{m.at_s:.1f} s {m.kind} {m.name}".strip() for m in figures.marks)),
+        ("marks", ", ".join(f"{m.at_s:.1f} s {m.words}" for m in figures.marks)),
     ]
     return [(word, line) for word, line in rows if line]
 

@@ -217,6 +217,18 @@ def test_the_summary_names_every_scenario_that_was_played(a_step):
     assert "follow 1.0 s → companion 2.0 s" in shown
 
 
+def test_the_summary_counts_hops_as_what_was_seen(a_step):
+    summary = Summary("follow")
+    step = a_step(None)
+    for second, state in enumerate(["idle", "hop", "hop", "hop", "idle", "idle"]):
+        frame, posed = (
+            replace(step.frame, timestamp=float(second)),
+            replace(step.posed, state=state),
+        )
+        summary.add(replace(step, frame=frame, posed=posed), ROBOT, 0.02)
+    assert "idle 1.0 s → hop 3.0 s → idle 1.0 s" in printed(summary)
+
+
 def printed(summary):
     console = Console(width=120)
     with console.capture() as capture:
