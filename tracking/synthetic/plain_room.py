@@ -45,6 +45,7 @@ class PlainRoom:
     def __init__(self, intrinsics: Intrinsics, cubes: Sequence[CubeModel]) -> None:
         self._camera = CameraRays(intrinsics)
         self._cubes = [PaperCube(each, self._camera, seed=0) for each in cubes]
+        self._table: Array | None = None
         self._begin()
 
     def look_through(self, intrinsics: Intrinsics) -> None:
@@ -84,12 +85,13 @@ class PlainRoom:
                 part = image[region.index]
                 part *= 1.0 - cover
                 part += colour
-        return cv2.convertScaleAbs(image)  # rounds, and limits to 0…255
+        # It rounds, and limits to 0…255.
+        return np.asarray(cv2.convertScaleAbs(image), np.uint8)
 
     def _begin(self) -> None:
         # A lens bends what is far outside of the picture back into it.
         self._reach = MARGIN * np.abs(self._camera.rays(self._camera.whole(), 1)).max((0, 1))
-        self._table: Array | None = None
+        self._table = None
         self._ground = self._draw_ground(None)
 
     def _draw_ground(self, table: Array | None) -> Floats:
