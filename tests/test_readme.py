@@ -55,7 +55,11 @@ def test_a_video_becomes_a_table_of_poses(tmp_path, monkeypatch):
             video.write(frame.image, frame.timestamp)
     code = block("track")
     assert len(code.strip().splitlines()) == 3, "one import, and one line"
-    exec(compile(code, "README.md", "exec"), {})
+    (named,) = re.findall(r'track_video\("([^"]*)"', code)
+    assert (ROOT / named).is_file(), "everybody who cloned has it"
+    with open_source(str(ROOT / named)) as source:
+        assert not source.live
+    exec(compile(code.replace(named, "take.mp4"), "README.md", "exec"), {})  # a few frames of it
     with Path("poses.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(frames)

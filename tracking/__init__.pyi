@@ -3,6 +3,7 @@ from cubeling.tracking.calibration.solver import Calibration as Calibration
 from cubeling.tracking.cube.file import write_cube as write_cube
 from cubeling.tracking.cube.icons import (
     ICON_COLOURS as ICON_COLOURS,
+    OTHER_ACTION as OTHER_ACTION,
     has_icon as has_icon,
     icon_mask as icon_mask,
     icon_paths as icon_paths,

@@ -353,6 +353,7 @@ class Playground:
             has_intensity=self.scenario.has_intensity,
             line=lead.line,
             name=lead.name,
+            stands_upright=self.character.anatomy.kind == "humanoid",
             others=tuple(others),
             players=tuple(played),
             interior=interior,

@@ -129,6 +129,9 @@ class Step:
     name: str = ""
     """Name of the character in the cast."""
 
+    stands_upright: bool = False
+    """Whether the character is shown as a person where its picture is an icon."""
+
     others: tuple[Performance, ...] = ()
     """What the rest of the cast does."""
 

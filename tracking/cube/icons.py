@@ -40,6 +40,10 @@ None is dark: next to a marker, a dark colour would look like its black to a cam
 """
 
 
+OTHER_ACTION = "act"
+"""The icon of an action that has none of its own."""
+
+
 def icon_paths(name: str) -> list[Array]:
     """Return the loops of an icon, (N, 2) each, in the unit square, x right and y down.
 
@@ -171,6 +175,17 @@ def _block(x: float, y: float, side: float) -> Array:
     return np.array([(x, y), (x + side, y), (x + side, y + side), (x, y + side)])
 
 
+def _head(x: float, y: float) -> list[Array]:
+    """Return a head with two eyes."""
+    return [_disc(x, y, 0.35), *(_hole(_disc(x + each, y - 0.05, 0.055)) for each in (-0.13, 0.13))]
+
+
+def _star(x: float, y: float, radius: float) -> Array:
+    angle = np.radians(np.arange(8) * 45 - 90)
+    reach = np.where(np.arange(8) % 2, 0.3, 1.0) * radius
+    return np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None] + (x, y)
+
+
 def _flower(x: float, y: float) -> list[Array]:
     petals = [_disc(x + 0.075 * math.cos(a), y + 0.075 * math.sin(a), 0.06)
               for a in np.arange(5) * 0.4 * math.pi]  # fmt: skip
@@ -204,6 +219,33 @@ def _actions() -> dict[str, list[Array]]:
             *_stroke(0.045, (0.06, 0.3), (0.12, 0.33)),
             *_stroke(0.045, (0.94, 0.3), (0.88, 0.33)),
         ),
+        "wave": _person(
+            hanging,
+            ((0.76, 0.34), (0.79, 0.16)),
+            *_stroke(0.045, (0.62, 0.08), (0.67, 0.05)),
+            *_stroke(0.045, (0.92, 0.12), (0.95, 0.18)),
+        ),
+        "jump": _person(
+            ((0.3, 0.3), (0.22, 0.16)),
+            ((0.7, 0.3), (0.78, 0.16)),
+            *_stroke(0.045, (0.2, 0.74), (0.2, 0.9)),
+            *_stroke(0.045, (0.8, 0.74), (0.8, 0.9)),
+        ),
+        "nod": [
+            *_head(0.37, 0.47),
+            *_stroke(0.09, (0.86, 0.2), (0.86, 0.6)),
+            np.array([(0.72, 0.56), (1.0, 0.56), (0.86, 0.78)]),
+        ],
+        "shake": [
+            *_head(0.5, 0.36),
+            *_stroke(0.09, (0.26, 0.87), (0.74, 0.87)),
+            np.array([(0.28, 0.73), (0.28, 1.0), (0.07, 0.87)]),
+            np.array([(0.72, 0.73), (0.93, 0.87), (0.72, 1.0)]),
+        ],
+        OTHER_ACTION: [
+            _star(0.42, 0.54, 0.42),
+            _star(0.84, 0.2, 0.16),
+        ],
         "wait": [
             *_stroke(0.09, (0.2, 0.07), (0.8, 0.07)),
             *_stroke(0.09, (0.2, 0.93), (0.8, 0.93)),

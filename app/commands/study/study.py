@@ -218,7 +218,10 @@ def _open_desk(
         return desk
     if window:
         if not has_display():
-            raise AppError("there is no display here for a window: leave out --window, or --page")
+            raise AppError(
+                "there is no display here for a window: leave out --window to be asked in the "
+                "terminal, or take --page instead"
+            )
         from cubeling.app.workshop.study.window.window_desk import WindowDesk
 
         shown = WindowDesk(protocol, setup, folder, say=lambda line: console.print(Text(line)))

@@ -37,7 +37,7 @@ from cubeling.app.ui.palette import (
     between,
     mood_color,
 )
-from cubeling.tracking import has_icon
+from cubeling.tracking import OTHER_ACTION, has_icon
 
 HALF_CAPITAL = 8.5 / 24.0
 """Half the height of capital letters, as a share of the size of a text."""
@@ -114,7 +114,8 @@ def cards_over(
         strength = command.speed if moves else weight
         # The value changes in every frame: drawn again is what moves the bar by a pixel.
         strength = None if strength is None else round(strength, 2)
-        cards["bottom left"] = _action(name, moves, strength, scale)
+        icon = "stand" if name == "idle" and step.stands_upright else name
+        cards["bottom left"] = _action(name, icon, moves, strength, scale)
     if step.close_up is not None and width >= MIN_VIRTUAL_ROBOT_WIDTH:
         cards["top left"] = _close_up(step.close_up, scale)
     sizes = {home: canvas.size for home, canvas in cards.items()}
@@ -216,11 +217,11 @@ def _hint(words: str, width: float, scale: float) -> Card:
 
 
 @lru_cache(maxsize=8)
-def _action(name: str, moves: bool, strength: float | None, scale: float) -> Canvas:
+def _action(name: str, icon: str, moves: bool, strength: float | None, scale: float) -> Canvas:
     """Draw an action with its speed if it moves, else with its weight; None if it has none."""
     if strength is None:
-        return _plain_action(name, scale)
-    canvas = _action_background(name, moves, scale).copy()
+        return _plain_action(name, icon, scale)
+    canvas = _action_background(name, icon, moves, scale).copy()
     if moves:
         _speed(canvas, strength, ACTION_COLORS.get(name, INK))
     elif name != "idle":
@@ -229,9 +230,9 @@ def _action(name: str, moves: bool, strength: float | None, scale: float) -> Can
 
 
 @lru_cache(maxsize=16)
-def _action_background(name: str, moves: bool, scale: float) -> Canvas:
+def _action_background(name: str, icon: str, moves: bool, scale: float) -> Canvas:
     """Draw what does not change during an action."""
-    canvas = _action_icon(name, scale)
+    canvas = _action_icon(name, icon, scale)
     canvas.text(108, 42, "Idle" if name == "stand" else name.title(), 28, INK)
     canvas.bar(ACTION_BAR_X, BAR_Y, ACTION_BAR_WIDTH, 10, RULE)
     if moves:
@@ -245,21 +246,18 @@ def _action_background(name: str, moves: bool, scale: float) -> Canvas:
 
 
 @lru_cache(maxsize=16)
-def _plain_action(name: str, scale: float) -> Canvas:
+def _plain_action(name: str, icon: str, scale: float) -> Canvas:
     """Draw an action without intensity."""
-    canvas = _action_icon(name, scale)
+    canvas = _action_icon(name, icon, scale)
     canvas.text(108, 65, name.title(), 30, INK)
     return canvas
 
 
-def _action_icon(name: str, scale: float) -> Canvas:
-    """Return the card of an action, with its icon only."""
+def _action_icon(name: str, icon: str, scale: float) -> Canvas:
+    """Return the card of an action, with its icon only; others' actions share one."""
     canvas = Canvas(ACTION_CARD_WIDTH, CARD_HEIGHT, scale)
     canvas.disc(54, 54, 38, ACTION_COLORS.get(name, INK))
-    if has_icon(name):
-        canvas.icon(32, 32, 44, name, PAPER)
-    else:  # a scenario may name an action that has no icon
-        canvas.text(54, 69, name[:1].upper(), 42, PAPER, "middle")
+    canvas.icon(32, 32, 44, icon if has_icon(icon) else OTHER_ACTION, PAPER)
     return canvas
 
 

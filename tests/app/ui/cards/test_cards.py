@@ -15,6 +15,7 @@ from cubeling.app.ui.cards.overlay import CARD_HEIGHT, overlay, virtual_robot_si
 from cubeling.characters import ActionIntent, LocomotionIntent
 from cubeling.characters.control.command import SpeechIntent
 from cubeling.characters.speech.speech import Utterance
+from cubeling.tracking import has_icon
 
 
 def test_what_was_drawn_before_leaves_nothing_on_the_cards(a_step):
@@ -34,9 +35,9 @@ def test_what_was_drawn_before_leaves_nothing_on_the_cards(a_step):
     assert (between != first).any()
 
 
-def card_titles(a_step, *icons):
+def card_titles(a_step, *icons, left_px=100, **changes):
     """Return the part of the action's card that holds its title, for each icon."""
-    step = a_step(None)
+    step = replace(a_step(None), **changes)
     step = replace(step, controls=replace(step.controls, camera_from_table=np.eye(4)))
     top, left = round(720 - CARD_HEIGHT - CARD_MARGIN), round(CARD_MARGIN)
     for icon in icons:
@@ -44,7 +45,7 @@ def card_titles(a_step, *icons):
         picture = overlay(
             np.full((720, 1280, 3), 90, np.uint8), shown, RobotView("ready", 0.0, "neutral")
         )
-        yield picture[top + 12 : top + 56, left + 100 : left + 280]
+        yield picture[top + 12 : top + 56, left + left_px : left + left_px + 180]
 
 
 def test_a_character_that_stands_is_called_idle_in_every_scenario(a_step):
@@ -54,8 +55,26 @@ def test_a_character_that_stands_is_called_idle_in_every_scenario(a_step):
 
 
 def test_an_action_without_an_icon_has_a_card_with_its_name(a_step):
-    wave, idle = card_titles(a_step, "wave", "idle")
-    assert (wave != idle).any()
+    wiggle, idle = card_titles(a_step, "wiggle", "idle")
+    assert (wiggle != idle).any()
+
+
+def test_who_stands_upright_has_no_dinosaur_on_its_card(a_step):
+    where = {"left_px": 20, "has_intensity": True}
+    idle, stand = card_titles(a_step, "idle", "stand", stands_upright=True, **where)
+    (vleo,) = card_titles(a_step, "idle", **where)
+    icon = np.s_[:, :70]
+    assert (idle[icon] != vleo[icon]).any()
+    shapes = [
+        np.abs(each[icon].astype(int) - each[2, 34]).max(axis=2) > 60 for each in (idle, stand)
+    ]
+    np.testing.assert_array_equal(*shapes)
+
+
+def test_what_the_human_can_do_has_icons_and_others_share_one(a_step):
+    assert [act for act in ("wave", "cheer", "jump", "nod", "shake") if not has_icon(act)] == []
+    wiggle, twist = card_titles(a_step, "wiggle", "twist", left_px=20)
+    np.testing.assert_array_equal(wiggle[:, :70], twist[:, :70])
 
 
 def test_only_an_action_with_an_intensity_has_its_slider(a_step):
