@@ -9,13 +9,17 @@ from rich.markup import escape
 
 from cubeling.app.commands.output import OverwriteOption, chosen_output
 
+USUAL_PAPER = "a4"
+"""Sheets on other paper are named by it: neither overwrites the other."""
+
 
 def cube(
     name: Annotated[str, typer.Argument(help="companion, locomotion, or your own .toml file.")],
     edge_mm: Annotated[float | None, typer.Option(help="Edge [mm]; the markers scale.")] = None,
-    paper: Annotated[str, typer.Option(help="Paper: a4, letter or a3.")] = "a4",
+    paper: Annotated[str, typer.Option(help="Paper: a4, letter or a3.")] = USUAL_PAPER,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="The PDF; by default NAME.pdf.")
+        Path | None,
+        typer.Option("--output", "-o", help="The PDF; by default NAME.pdf, or NAME-PAPER.pdf."),
     ] = None,
     overwrite: OverwriteOption = False,
 ) -> None:
@@ -31,7 +35,8 @@ def cube(
 
     model = CubeModel.load(name)
     check_roles(model, name)
-    path = chosen_output(output, f"{Path(name).stem}.pdf", "sheet", (".pdf",), overwrite)
+    size = "" if paper.lower() == USUAL_PAPER else f"-{paper.lower()}"
+    path = chosen_output(output, f"{Path(name).stem}{size}.pdf", "sheet", (".pdf",), overwrite)
     write_sheet(model, path, edge_mm=edge_mm, paper=paper)
     Console().print(
         f"[bold]{escape(str(path))}[/] is ready. Print it at 100 %, cut along the solid line, and "

@@ -42,3 +42,13 @@ def test_the_example_of_the_page_can_be_printed(cubeling):
     Path("museum.toml").write_text(MUSEUM, "utf-8")
     assert cubeling("cube", "museum.toml")[0] == 0
     assert Path("museum.pdf").exists()
+
+
+def test_a_sheet_on_other_paper_does_not_overwrite_that_on_a4(cubeling):
+    assert cubeling("cube", "companion")[0] == 0
+    first = Path("companion.pdf").read_bytes()
+    code, out, _ = cubeling("cube", "companion", "--paper", "Letter")
+    assert code == 0
+    assert "companion-letter.pdf" in out
+    assert Path("companion.pdf").read_bytes() == first
+    assert Path("companion-letter.pdf").is_file()
