@@ -9,6 +9,7 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.motion.clip import Clip
 from cubeling.characters.rendering.context import create_context
 from cubeling.characters.rendering.portrait import SAMPLED_POSES, Focus, PortraitRenderer
+from cubeling.characters.retargeting.lent_motions import with_lent_motions
 from cubeling.characters.skeleton.pose import Array, Pose
 
 Image = NDArray[np.uint8]
@@ -34,7 +35,8 @@ def draw_picture(
     Parameters
     ----------
     character, pose
-        Who is drawn, and how it stands; as `standing_pose` says if None.
+        Who is drawn, and how it stands; if None, as `standing_pose` says, with lent motions for a
+        character that has none to stand.
     size
         Width and height of the picture [px].
     azimuth, elevation, focus
@@ -47,11 +49,11 @@ def draw_picture(
     """
     context = create_context()
     renderer = PortraitRenderer(context, size)
+    if pose is None:
+        character = with_lent_motions(character)
+        pose = standing_pose(character)
     try:
-        shown = standing_pose(character) if pose is None else pose
-        return renderer.portrait(
-            character, shown, azimuth=azimuth, elevation=elevation, focus=focus
-        )
+        return renderer.portrait(character, pose, azimuth=azimuth, elevation=elevation, focus=focus)
     finally:
         renderer.release()
         context.release()

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from cubeling.app.ui.contact_sheets import ContactSheets, save, trim
-from cubeling.characters import Character
+from cubeling.characters import Character, with_lent_motions
 from cubeling.characters.formats import load_motion
 from cubeling.characters.model.stick_figures import stick_figure
-from cubeling.characters.rendering import create_context
+from cubeling.characters.rendering import create_context, draw_picture, standing_pose
 from cubeling.characters.rendering.portrait import PAPER_BGR
 from tools.cast import draw_cast
 
@@ -73,6 +73,30 @@ def test_inspect_describes_and_draws_a_bundled_character(cubeling):
     assert 0.5 < paper(picture).mean() < 0.95
     assert {path.name for path in Path("seen").iterdir()} == {"turntable.png", "faces.png"}
     assert "seen/turntable.png" in out
+
+
+@pytest.mark.slow(reason="a character is written, read and drawn")
+def test_a_person_without_motions_is_drawn_with_hanging_arms(cubeling, monkeypatch):
+    replace(Character.load("human"), clips={}).save(Path("still.glb"))
+    still = Character.load("still.glb")
+    lent = with_lent_motions(still)
+    seen = [
+        ~paper(draw_picture(body, pose, azimuth=0.0))
+        for body, pose in ((still, None), (lent, standing_pose(lent)), (still, still.skeleton.rest))
+    ]
+    # The shadow lies beside the legs.
+    arms_hang, as_in_play, arms_spread = (
+        np.ptp(np.flatnonzero(each[: len(each) * 55 // 100].any(axis=0))) for each in seen
+    )
+    assert arms_hang == as_in_play
+    assert arms_hang < 0.7 * arms_spread
+    drawn = []
+    blank = np.zeros((1, 1, 3), np.uint8)
+    monkeypatch.setattr(ContactSheets, "turntable", lambda _, body: drawn.append(body) or blank)
+    code, _, err = cubeling("character", "inspect", "still.glb")
+    assert (code, err) == (0, "")
+    (body,) = drawn
+    np.testing.assert_array_equal(standing_pose(body).rotations, standing_pose(lent).rotations)
 
 
 @pytest.mark.slow(reason="a character is written, read and drawn")

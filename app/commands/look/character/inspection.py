@@ -80,7 +80,7 @@ def inspect_command(
     _print(console, inspection)
     if folder is None:
         return
-    for path in _draw(inspection.character, folder, clips or not has_body):
+    for path in _draw(inspection.character, folder, clips, has_body):
         console.print(f"Written: [bold]{escape(str(path))}[/]", soft_wrap=True)
 
 
@@ -115,13 +115,15 @@ def sentence(note: str, name: str) -> str:
     return f"{note[:1].upper()}{note[1:]}."
 
 
-def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
-    """Draw a character, and return the paths of the pictures."""
+def _draw(character: Character, folder: Path, clips: bool, has_body: bool) -> list[Path]:
+    """Draw a character as it stands in play, or a motion; return the paths of the pictures."""
     from cubeling.app.ui.contact_sheets import CLIP_COLUMNS, TURNTABLE_COLUMNS, ContactSheets, save
+    from cubeling.characters import with_lent_motions
     from cubeling.characters.rendering import create_context
 
+    standing = with_lent_motions(character) if has_body else character
     faces = character.anatomy.joint("head") is not None and bool(character.morphs)
-    shown = list(character.clips.values()) if clips else []
+    shown = list(character.clips.values()) if clips or not has_body else []
     count = TURNTABLE_COLUMNS + faces * (1 + len(character.morphs)) + CLIP_COLUMNS * len(shown)
     with ExitStack() as closing:
         advance = closing.enter_context(_progress("Drawing", count))
@@ -129,7 +131,7 @@ def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
         closing.callback(context.release)
         sheets = ContactSheets(context, advance)
         closing.callback(sheets.release)
-        pictures = {"turntable.png": sheets.turntable(character)}
+        pictures = {"turntable.png": sheets.turntable(standing)}
         if faces:
             pictures["faces.png"] = sheets.faces(character)
         if shown:
