@@ -143,26 +143,31 @@ def run(
     if not output.parent.is_dir():
         raise AppError(f"there is no folder '{output.parent}' for the study '{output.name}'")
     from cubeling.app.workshop.study.participants.running import run_participant, run_simulated
-    from cubeling.app.workshop.study.participants.study_log import StudyFolder
+    from cubeling.app.workshop.study.participants.study_log import StudyFolder, participants_in
     from cubeling.app.workshop.study.protocols.protocol_file import load_protocol
 
     if simulated:
         _needs_scipy()
     loaded, file = load_protocol(protocol)
-    kind = "simulated" if simulated else "pilot" if pilot else "study"
-    study = StudyFolder(output, loaded, file, kind)
     console = Console(highlight=False, soft_wrap=True)
     if simulated:
-        run_simulated(study, simulated)
+        run_simulated(StudyFolder(output, loaded, file, "simulated"), simulated)
         _report(output, console)
         pilot_run = ["cubeling", "study", "run", protocol, "-o", "pilot", "--pilot"]
         words = shlex.join([*pilot_run, "--participant", "X1", "--window"])
         console.print(Text.assemble("Next, try it yourself: ", (words, "cyan")))
         return
+    from dataclasses import replace
     from datetime import datetime
 
+    from cubeling.app.session import check_participant
     from cubeling.app.workshop.study.participants.live_task import TaskSetup, check_tasks
 
+    check_participant(participant)
+    setup = TaskSetup(source_of(source), robot, pictures, intrinsics, parts=parts)
+    begins = all(person.code != participant for person in participants_in(output))
+    check_tasks(loaded, setup, camera=begins and source != PHONE)
+    study = StudyFolder(output, loaded, file, "pilot" if pilot else "study")
     try:
         with ExitStack() as closing:
             server = None
@@ -174,9 +179,7 @@ def run(
                 )
                 closing.callback(server.close)
             opened = closing.enter_context(instruments.open(loaded.wizard, server))
-            setup = TaskSetup(source_of(source), robot, pictures, intrinsics, opened, parts)
-            begins = all(person.code != participant for person in study.people)
-            check_tasks(loaded, setup, camera=begins and source != PHONE)
+            setup = replace(setup, instruments=opened)
             desk = _open_desk(loaded, setup, file, console, server, closing, window=window)
             log = study.begin(participant, datetime.now())  # once all is open: it counts as begun
             done = len(log.plan) - len(log.left)

@@ -318,6 +318,8 @@ def test_the_report_says_how_tasks_count_that_did_not_go_on_to_the_end(tmp_path)
         ("run", "vleo-and-pleo", "-o", "s"),
         ("run", "vleo-and-pleo", "-o", "no/s", "--participant", "P1"),
         ("run", "vleo-and-pleo", "-o", "s", "--participant", "a/b"),
+        ("run", "vleo-and-pleo", "-o", "s", "--participant", "P1", "--source", "missing.mp4"),
+        ("run", "vleo-and-pleo", "-o", "s", "--participant", "P1", "--robot", "sim:dragon"),
         ("run", "vleo", "-o", "s", "--simulated", "2"),
         ("run", "missing.toml", "-o", "s", "--simulated", "2"),
         ("run", "vleo-and-pleo", "-o", "s", "--simulated", "2", "--pilot"),
@@ -328,10 +330,11 @@ def test_the_report_says_how_tasks_count_that_did_not_go_on_to_the_end(tmp_path)
         ("new", "x.toml", "--like", "y"),
     ],
 )
-def test_bad_input_is_one_line(cubeling, arguments):
+def test_bad_input_is_one_line_and_leaves_nothing(cubeling, tmp_path, arguments):
     code, _, err = cubeling("study", *arguments)
     assert code == 2
     assert len(err.splitlines()) == 1
+    assert not list(tmp_path.iterdir())
 
 
 def test_the_report_counts_a_wizards_acts_and_errors_and_gives_the_delays(tmp_path):
