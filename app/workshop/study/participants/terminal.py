@@ -9,16 +9,8 @@ from rich.text import Text
 from cubeling.app.errors import AppError
 from cubeling.app.workshop.study.participants.live_task import LiveDesk, TaskSetup
 from cubeling.app.workshop.study.participants.stimulus_files import names_of
-from cubeling.app.workshop.study.participants.study_log import ParticipantLog
-from cubeling.app.workshop.study.protocols.goals import TaskResult
 from cubeling.app.workshop.study.protocols.plan import PlannedStep
-from cubeling.app.workshop.study.protocols.protocol import (
-    Protocol,
-    Settings,
-    StimulusSet,
-    StudyTask,
-    pair_members,
-)
+from cubeling.app.workshop.study.protocols.protocol import Protocol, StimulusSet, pair_members
 from cubeling.app.workshop.study.protocols.questionnaires import Answer, Item, Questionnaire
 
 
@@ -57,15 +49,6 @@ class TerminalDesk(LiveDesk):
                 return item.parse(self._read("> "))
             except AppError as error:
                 self._console.print(Text(str(error), "yellow"))
-
-    def play(
-        self, step: PlannedStep, task: StudyTask, settings: Settings, log: ParticipantLog
-    ) -> tuple[TaskResult, str]:
-        """Say what the task is, let it be played, and say how it ended."""
-        result, recording = super().play(step, task, settings, log)
-        words = f"after {result.time_s:.1f} s" if result.time_s is not None else "not reached"
-        self._console.print(Text(f"{task.goal.words}: {words}", "dim"))
-        return result, recording
 
     def thank(self) -> None:
         """Say nothing: the command thanks."""

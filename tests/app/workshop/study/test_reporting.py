@@ -273,6 +273,7 @@ def test_a_participant_plays_and_answers_and_goes_on_later(
     code, out, err = cubeling(*run, "--source", bundled_session)
     assert code == 130  # the input ended
     assert "a number from 1 to 5, please" in out
+    assert "reached" not in out, "it would tell the participant what is measured"
     assert "Go on: cubeling study run x.toml -o s --participant P01" in out
     info = session_info(tmp_path / "s" / "P01" / "kiss.mcap")
     assert (info.labels.participant, round(info.duration)) == ("P01", 1)
