@@ -47,8 +47,9 @@ def test_keys_give_the_answer_and_enter_goes_on(item, keys, typed, answer):
     assert (sheet.done, sheet.answer) == (True, answer)
 
 
-def test_a_question_without_an_answer_stays_and_says_what_is_needed():
-    sheet = operated(SCALE)
+@pytest.mark.parametrize("item", [SCALE, CHOICE, SLIDER])
+def test_a_question_without_an_answer_stays_and_says_what_is_needed(item):
+    sheet = operated(item)
     before = sheet.draw(0.5)
     sheet.press("Enter")
     assert not sheet.done
