@@ -32,13 +32,13 @@ CENTRE_M = np.array([0.0, 0.08, 0.0])
 REACH_M = 1.0
 """How far the table reaches, and how far what stands around it is [m]: a desk, and its walls."""
 
-LOOK_INTERVAL_S, RENEWAL_INTERVAL_S = 0.1, 0.6
-"""Time from one look at the picture to the next, and usual time from one map to the next: there are
-never more than two in twice that time."""
+LOOK_INTERVAL_S, RENEWAL_INTERVAL_S, TWO_MAPS_S = 0.1, 0.6, 1.0
+"""Time from one look at the picture to the next, usual time from one map to the next, and least
+time in which there are two."""
 
-HASTY_INTERVAL_S, QUIET_S = 0.2, 1.8
-"""Time from one map to the next where much has changed, and least time since the map before these
-then: while all is in motion, maps are evenly spaced."""
+HASTY_INTERVAL_S, QUIET_S = 0.2, 0.9
+"""Time from one map to the next where much has changed, if the last came so long after the one
+before: while all is in motion, maps are evenly spaced."""
 
 MIN_CHANGE, MUCH_CHANGE = 3.0, 8.0
 """Difference from the picture of the last map from which on there is a new one, and in haste: the
@@ -108,7 +108,8 @@ class RoomMeter:
         self._standing: list[Seen] = []
         self._last: Image | None = None  # small picture of the last map
         self._map: EnvironmentMap | None = None
-        self._looked = self._renewed = self._renewed_before = -np.inf
+        self._looked = self._renewed = -np.inf
+        self._gap = np.inf  # from the map before the last to the last [s]
 
     def update(
         self,
@@ -136,15 +137,14 @@ class RoomMeter:
         """
         if now < self._looked:  # a recording is wound back
             self._looked = self._renewed = now - RENEWAL_INTERVAL_S
-            self._renewed_before = now - 2 * RENEWAL_INTERVAL_S
+            self._gap = np.inf
         due = self._map is None or now - self._looked >= LOOK_INTERVAL_S - 1e-6
         if camera_from_table is None or not due:
             return self._map
         self._looked = now
         waited = now - self._renewed + 1e-6
-        since_last_two = now - self._renewed_before + 1e-6
-        is_due = waited >= RENEWAL_INTERVAL_S and since_last_two >= 2 * RENEWAL_INTERVAL_S
-        if not is_due and (waited < HASTY_INTERVAL_S or since_last_two < QUIET_S):
+        is_due = waited >= max(RENEWAL_INTERVAL_S, TWO_MAPS_S - self._gap)
+        if not is_due and (waited < HASTY_INTERVAL_S or self._gap < QUIET_S):
             return self._map
         height = max(image.shape[0] * SMALL_WIDTH // image.shape[1], 1)
         small = np.asarray(cv2.resize(image, (SMALL_WIDTH, height)), np.uint8)
@@ -152,7 +152,7 @@ class RoomMeter:
         if self._differs(small, change) or self._has_moved(camera_from_table):
             self._see(small, camera_from_table, now)
             self._map = self._complete(light, now)
-            self._last, self._renewed_before, self._renewed = small, self._renewed, now
+            self._last, self._gap, self._renewed = small, waited, now
         return self._map
 
     def _differs(self, small: Image, least: float) -> bool:
