@@ -7,7 +7,7 @@ Prints each bar with what it is today; exits with 1 if one is missed.
 - A coloured card is put beside a metal character in a picture of a bundled recording, at once, and
   taken away again. How long until it shows in the character, and how much one picture differs from
   the one before at most (ΔE76, the mean over the character). It is put there after a quiet while,
-  and just after something else has changed, which has to be waited for.
+  and just after something else has changed.
 - Time of measuring and preparing the light, as a multiple of OpenCV's detection of markers in a
   whole frame (CPU time of all threads, in turns), and of the whole line with and without it.
 
@@ -343,7 +343,7 @@ def main() -> None:
         add(
             f"{Path(name).stem}, card {when}: shown",
             found.shown_s,
-            None if busy else SHOWN_BAR_S,
+            SHOWN_BAR_S,
             "s",
         )
         add("  half of it", found.half_s, None, "s")
