@@ -1,7 +1,9 @@
 """When the phases of a gesture are, and how far it is at a time."""
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import dataclass
+from typing import Self
 
 from cubeling.characters.behaviour.intents import StrokeTimes
 from cubeling.characters.behaviour.symbolic_gesture import SymbolicGesture
@@ -106,11 +108,19 @@ class PhaseTimes:
             relax = times.stroke_end + ASSUMED_HOLD_S
             end = None
         asked = (times.start, times.ready, times.stroke_start, times.stroke, times.stroke_end)
-        ordered = _in_order((*asked, relax, relax + retraction if end is None else end))
-        self.knots = ordered
+        self._take(_in_order((*asked, relax, relax + retraction if end is None else end)))
+
+    def _take(self, knots: list[float]) -> None:
+        self.knots = knots
         """Start, ready, stroke start, stroke, stroke end, relax and end [s], ascending."""
-        self.start, self.ready, self.stroke_start, self.stroke = ordered[:4]
-        self.stroke_end, self.relax, self.end = ordered[4:]
+        self.start, self.ready, self.stroke_start, self.stroke = knots[:4]
+        self.stroke_end, self.relax, self.end = knots[4:]
+
+    def later(self, seconds: float) -> Self:
+        """Return the times with all but the start later by so much [s]."""
+        other = copy(self)
+        other._take([self.knots[0], *(knot + seconds for knot in self.knots[1:])])
+        return other
 
     def in_stroke(self, share: float) -> float:
         """Return when a share of all strokes is over [s]: the apex falls on `stroke`."""

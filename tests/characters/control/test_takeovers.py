@@ -32,3 +32,11 @@ def test_a_takeover_is_no_faster_than_the_bar(player, first, second):
     fastest = max(peak.speed for peak, _ in alone.values())
     peak = player.takeover(second, alone[first][1])
     assert peak.speed < takeovers.MAX_RATIO * fastest, peak
+
+
+@pytest.mark.slow(reason="a body plays two gestures")
+def test_a_gesture_in_the_place_of_another_one_takes_as_long_as_its_way(player):
+    alone = {name: player.alone(name) for name in ("OPEN_ARMS", "script")}
+    fastest = max(peak.speed for peak, _ in alone.values())
+    peak = player.takeover("script", alone["OPEN_ARMS"][1])
+    assert peak.speed < 1.12 * fastest, peak  # 1.18 in the time that it takes from rest

@@ -60,14 +60,19 @@ class GestureLayer:
         """Begin what is new and re-time what has changed; return what is asked for."""
         known = list(self._active)
         going: list[GesturePlayback] = []
+        begun: list[GesturePlayback] = []
         for intent in asked.gestures:
             each = next((each for each in known if each.plays(intent)), None)
             if each is None:
                 each = self._begin(intent, now, [*going, *known], asked)
+                begun.append(each)
             else:
                 known.remove(each)
             each.retime(intent, now)
             going.append(each)
+        given_up = any(each.is_under_way(now) for each in known)
+        for each in begun:
+            each.takes_over = given_up
         self._active = [*known, *going]
         return set(going)
 

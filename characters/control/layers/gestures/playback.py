@@ -31,6 +31,14 @@ taken from its end to rest; longer where they are far away."""
 LEAVE_SPEED_RAD = 5.0
 """How fast a joint goes then at most: usual gestures are as fast [rad/s]."""
 
+USUAL_AWAY_RAD, MOST_AWAY_RAD = 0.5, 1.8
+"""How far a joint of an arm is from rest while nothing holds it [rad], and the angle up to which
+more than that counts."""
+
+AWAY_SLOWNESS = 0.15
+"""How much longer a gesture prepares for each radian that the gesture whose place it takes has left
+an arm farther away [1/rad]: the way from there is longer than that from rest."""
+
 POSTURES_PER_FRAME = 1
 """Key postures that are planned ahead in each frame, until all are there."""
 
@@ -52,6 +60,9 @@ class GesturePlayback:
 
     present: float
     """How far it has joined in, 0…1."""
+
+    takes_over: bool = False
+    """Whether it takes the place of one that is given up."""
 
     called_off: bool = False
     """Whether its new times leave no room for what is left of its strokes."""
@@ -149,6 +160,15 @@ class GesturePlayback:
     def _phase_times(self) -> PhaseTimes:
         return PhaseTimes(self.intent.times, self._apex, self.intent.gesture.retraction)
 
+    def _prepare_longer(self, start: Array) -> None:
+        """Let all but the start be later by how far the arms are from rest."""
+        rest = self._planning.joints.rest[: len(start)]
+        cosine = float(np.abs(np.vecdot(start, rest)).min())
+        away = min(2.0 * math.acos(min(cosine, 1.0)), MOST_AWAY_RAD)
+        preparation = self._times.ready - self._times.start
+        later = AWAY_SLOWNESS * max(away - USUAL_AWAY_RAD, 0.0) * preparation
+        self._times = self._times.later(later)
+
     def is_over(self, now: float) -> bool:
         """Return whether nothing of it is left at a time [s]."""
         return self.moment(now) >= self._own.end
@@ -169,6 +189,8 @@ class GesturePlayback:
         if self._motion is None:  # it goes on from what the arms do now
             start = pose.rotations[self._planning.joints.arms]
             self._motion = self._planning.motion(self._own, start)
+            if self.takes_over:
+                self._prepare_longer(start)
         self._planning.advance(POSTURES_PER_FRAME)
         if self._left and self._shown is not None:
             below = pose.rotations.take(self._motion.moved, 0)
