@@ -197,7 +197,9 @@ def _reaching(body: Character) -> Take:
     for number in range(round(STEPS[-1][0] * RATE_HZ)):
         now = number / RATE_HZ
         doing = next(what for end, what in STEPS if now < end)
-        times = Times(begun.setdefault(doing, now), begun[doing] + 0.9)
+        begun.setdefault(doing, now)
+        held = begun["hold" if doing == "carry" else doing]  # hands that carry do not let go first
+        times = Times(held, held + 0.9)
         intent = _intent(doing, times, size, now - begun[doing]) if doing else None
         poses.append(placed_pose(animator.update(CharacterCommand(now, behaviour=intent))))
     return Take("", body, poses)
