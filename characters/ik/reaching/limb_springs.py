@@ -18,6 +18,10 @@ STRAIGHT_RAD = math.radians(16.0)
 """An elbow bent less than this is as good as straight: its spring goes on linearly, so that a place
 out of reach pulls with a finite force."""
 
+AT_EASE = 0.05
+"""How much shorter than at ease an arm is, in arm lengths, from which on its spring does not pull,
+but stiffens a step: one that did not see it coming would go far beyond, and tremble there."""
+
 SPARE, MAX_SHORT = 0.015, 0.06
 """Length of an arm that is kept in reserve, and what it may lack at most before it pulls no harder,
 in arm lengths."""
@@ -55,7 +59,11 @@ def arm_strain(pull: Pull, far: float, power: float) -> tuple[float, float]:
     near = _span(upper, fore, ease)
     far += SPARE * (upper + fore)
     if far <= near:
-        return 0.0, 0.0
+        share = 1.0 - (near - far) / (AT_EASE * (upper + fore))
+        if share <= 0.0:
+            return 0.0, 0.0
+        slope = near / (upper * fore * math.sin(ease))
+        return 0.0, share * ELBOW_SPRING * (1.0 + power) * slope * pull.weight
     far = near + pull.weight * (far - near)
     straight = _span(upper, fore, STRAIGHT_RAD)
     reached = min(far, straight)

@@ -217,3 +217,18 @@ def test_hips_do_not_snap_while_both_legs_are_straight(place: tuple[float, float
         assert settled is not None
         turned.append(settled.pelvis)
     assert np.degrees(np.abs(np.diff(turned, axis=0)).max()) < 0.2 * 3.0
+
+
+def test_a_trunk_does_not_tremble_where_an_arm_that_carries_is_at_ease() -> None:
+    """Both hands carry a box to and fro, 25 times a second; a spine trembled by 3° a frame."""
+    _, whole, pose = human()
+    settled, spines = None, []
+    for number in range(80):
+        turn = 1.8 * number / 25
+        x, y = 0.12 * np.sin(turn), 0.5 - 0.1 * (1.0 - np.cos(turn))
+        hands = (HandTarget(at((x + side, y, 0.26)), "hold") for side in (0.1, -0.1))
+        placed = whole.place(pose, *hands)
+        assert placed is not None
+        settled = placed.settle(start=settled, steps=FIRST_STEPS if settled is None else 1)
+        spines.append(settled.spine)
+    assert np.degrees(np.abs(np.diff(spines, axis=0)).max()) < 1.0
