@@ -8,7 +8,8 @@ oracle
 wrists
     Paths of both wrists in recorded motions, as the chest sees them, with the performer's own
     bones: how far the elbow is from the recorded one, of the arm that characters reach with, of
-    that with the person's own swivel taken from the first frame, and of a chain of two joints.
+    that which reaches from the first frame and keeps what its elbow has of its own, and of a chain
+    of two joints.
 campaign
     With `--solves 1000000` that many solves: share solved, not-a-numbers, joints beyond limits.
 
