@@ -1,6 +1,5 @@
 """Layers for characters that play motions of others, and gestures of few joints."""
 
-
 from cubeling.characters.body.capsules import CapsuleBody
 from cubeling.characters.body.dependent_joints import DependentJoints
 from cubeling.characters.body.self_collision import SafeRanges
