@@ -71,7 +71,8 @@ AFTERWARDS = {
         "my cat slept on my bed", "it was on sunday",
     ),
     "es": (
-        "era viejo y era mi mejor amigo", "por mi hermano", "en el cole", "mi gato duerme en mi cama",
+        "era viejo y era mi mejor amigo", "por mi hermano", "en el cole",
+        "mi gato duerme en mi cama",
         "fue el domingo",
     ),
 }  # fmt: skip
