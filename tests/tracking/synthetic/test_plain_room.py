@@ -19,6 +19,7 @@ def test_the_cube_is_drawn_where_it_was(source):
     assert image.shape == (360, 640, 3)
     found = CubeTracker(source.cube, source.intrinsics).update(Frame(image, 0.0, 0))
     assert found.visible
+    assert found.camera_from_cube is not None
     away = np.abs(found.camera_from_cube[:3, 3] - pose[:3, 3])
     # A pixel there is 1.4 mm; depth is known less well than what lies across.
     assert (away < (0.0007, 0.0007, 0.006)).all()
