@@ -312,11 +312,15 @@ class _SoundLine:
     """Prints once why nothing is heard or said, as soon as it is known."""
 
     def __init__(self, session: OpenedSession, console: Console) -> None:
-        self._watched = {"No sound": session.sound, "No speech": session.speaker}
+        sound = session.sound
+        self._watched: dict[str, Callable[[], str]] = {
+            "No sound": lambda: "" if sound is None else sound.problem,
+            "No speech": lambda: session.speaker.problem,
+        }
         self._console = console
 
     def __call__(self) -> None:
-        for words, source in tuple(self._watched.items()):
-            if source is not None and source.problem:
-                self._console.print(f"[dim]{words}: {escape(source.problem)}[/]", soft_wrap=True)
+        for words, problem_of in tuple(self._watched.items()):
+            if problem := problem_of():
+                self._console.print(f"[dim]{words}: {escape(problem)}[/]", soft_wrap=True)
                 del self._watched[words]
