@@ -72,8 +72,7 @@ AFTERWARDS = {
     ),
     "es": (
         "era viejo y era mi mejor amigo", "por mi hermano", "en el cole",
-        "mi gato duerme en mi cama",
-        "fue el domingo",
+        "mi gato duerme en mi cama", "fue el domingo",
     ),
 }  # fmt: skip
 """What would be answered by a word of it, with a joke, if nothing sad had been said."""
