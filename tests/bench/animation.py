@@ -221,6 +221,9 @@ else:
     importlib.import_module("app")  # sets numpy's threads, as `cubeling` does now
     from characters.behaviour.gestures.collection import GestureCollection
     GestureCollection.load_bundled = GestureCollection.bundled
+    sys.modules["cubeling.characters.speech.prosody.analysis"] = importlib.import_module(
+        "cubeling.characters.speech.prosody"
+    )
 sys.argv = [bench, "--serve"]
 runpy.run_path(bench, run_name="__main__")
 """
