@@ -250,8 +250,8 @@ class UpperBody:
     ) -> HandOnItsWay:
         """Return a hand whose elbow keeps what it has of its own in the pose of the frames."""
         number, arm = self.kinematics.number, hand.arm
-        places = (frames.places[number[joint]] for joint in arm.joints[1:])
-        return hand._replace(own=own_elbow(arm, *places, chest))
+        shoulder, elbow, wrist = (frames.places[number[joint]] for joint in arm.joints[1:])
+        return hand._replace(own=own_elbow(arm, shoulder, elbow, wrist, chest))
 
     def _torso_turn(
         self, torso: PlacedTorso, hands: Sequence[HandOnItsWay], style: ReachStyle
