@@ -12,9 +12,8 @@ from cubeling.affect import LABEL_SETS
 from cubeling.app.pipeline.playground import Playground
 from cubeling.app.pipeline.scenario import Inputs
 from cubeling.app.pipeline.step import RobotView, Step
-from cubeling.app.running.asked_scenario import load_cast
+from cubeling.app.running.asked_scenario import load_cast, scenario_of
 from cubeling.app.running.kept_lens import intrinsics_for
-from cubeling.app.scenarios import find_scenario
 from cubeling.app.session import SessionOptions
 from cubeling.app.speaking.speaker import LiveSpeaker
 from cubeling.app.ui.cards.layout import CardLayout
@@ -65,8 +64,11 @@ def draw_play(folder: Path) -> None:
 
 def moment(scenario: str, typed: Mapping[float, str], at: float) -> tuple[Step, Picture]:
     """Return the step at a time [s], and its picture with the cards."""
-    asked, kind = sorted(typed.items()), find_scenario(scenario)
-    lead, *others = load_cast(SessionOptions(source="synthetic:talk", scenario=scenario), kind)
+    asked, options = (
+        sorted(typed.items()),
+        SessionOptions(source="synthetic:talk", scenario=scenario),
+    )
+    lead, *others = load_cast(options, scenario_of(options, scenario))
     with ExitStack() as closing:
         source = closing.enter_context(open_source("synthetic:talk"))
         context = create_context()

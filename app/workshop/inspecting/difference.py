@@ -44,15 +44,16 @@ class Difference:
 
 def figure_differences(first: SessionFigures, second: SessionFigures) -> Iterator[Difference]:
     """Yield which lines of their summaries differ, and what else was played differently."""
-    summaries = [dict(lines_of(each)) for each in (first, second)]
-    yield from _differences(*summaries, leave_out=NAMED_LINES)
-    played = [
-        {PLAYED_WORDS.get(k, k): v for k, v in each.played.items()} for each in (first, second)
-    ]
+    yield from _differences(dict(lines_of(first)), dict(lines_of(second)), NAMED_LINES)
     # The summaries have said these.
-    yield from _differences(*played, leave_out=("scenario", "character", "personality"))
-    begun = [{"begun (UTC)": each.info.clock_zero} for each in (first, second)]
-    yield from _differences(*begun)
+    said = "scenario", "character", "personality"
+    yield from _differences(_played(first), _played(second), said)
+    begun = "begun (UTC)"
+    yield from _differences({begun: first.info.clock_zero}, {begun: second.info.clock_zero})
+
+
+def _played(figures: SessionFigures) -> dict[str, str]:
+    return {PLAYED_WORDS.get(name, name): value for name, value in figures.played.items()}
 
 
 def channel_differences(

@@ -91,9 +91,13 @@ def test_a_person_without_motions_is_drawn_with_hanging_arms(cubeling, monkeypat
     assert arms_hang == as_in_play
     assert arms_hang < 0.7 * arms_spread
     drawn = []
-    blank = np.zeros((1, 1, 3), np.uint8)
-    monkeypatch.setattr(ContactSheets, "turntable", lambda _, body: drawn.append(body) or blank)
-    code, _, err = cubeling("character", "inspect", "still.glb")
+
+    def turntable(_, body):
+        drawn.append(body)
+        return np.zeros((1, 1, 3), np.uint8)
+
+    monkeypatch.setattr(ContactSheets, "turntable", turntable)
+    code, _, err = cubeling("character", "inspect", "still.glb", "-o", "seen")
     assert (code, err) == (0, "")
     (body,) = drawn
     np.testing.assert_array_equal(standing_pose(body).rotations, standing_pose(lent).rotations)

@@ -351,6 +351,8 @@ def test_two_of_one_body_are_told_apart_by_their_colours(tmp_path):
     creon, antigone = load_cast(options, scenario)
     assert (creon.name, antigone.name) == ("creon", "antigone")
     ones, others = creon.meshes[0].colors, antigone.meshes[0].colors
+    assert ones is not None
+    assert others is not None
     different = np.linalg.norm(ones - others, axis=1) > 0.1
     assert 0.3 < different.mean() < 0.8, "hair and clothes, and not the skin"
     as_asked = load_cast(replace(options, character="vleo"), scenario)

@@ -100,13 +100,10 @@ def rules(tmp_path):
 
 
 def test_what_a_file_of_rules_says_is_heard_in_a_film_too(rules, short_session):
-    film = {"source": str(short_session), "robot": "none", "pictures": False}
-    with open_session(SessionOptions(scenario=rules, **film)) as session:
+    film = SessionOptions(scenario=rules, source=str(short_session), robot="none", pictures=False)
+    with open_session(film) as session:
         assert session.speaker.language == "en"
-    for silent in (
-        SessionOptions(scenario=rules, language="none", **film),
-        SessionOptions(scenario="companion", **film),
-    ):
+    for silent in (replace(film, language="none"), replace(film, scenario="companion")):
         with open_session(silent) as session:
             assert not session.speaker.live
 

@@ -9,7 +9,7 @@ from hypothesis import given, strategies as st
 
 from cubeling.characters import Animator, Character, CharacterError, Pose
 from cubeling.characters.behaviour.gestures.collection import GestureCollection
-from cubeling.characters.behaviour.gestures.planning import natural_times
+from cubeling.characters.behaviour.gestures.timing import natural_times
 from cubeling.characters.behaviour.intents import BehaviourIntent, GestureIntent
 from cubeling.characters.body.capsules import CapsuleBody, segment_distances
 from cubeling.characters.body.dependent_joints import DependentJoints, fade

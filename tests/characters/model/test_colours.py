@@ -24,6 +24,8 @@ def human():
 def test_a_colour_takes_the_place_of_another_one_and_of_no_other(human):
     dressed = with_colours(human, colours_of(f"{HAIR}=#c9c4ba {TEAL}=#7d1b34"))
     before, after = human.meshes[0].colors, dressed.meshes[0].colors
+    assert before is not None
+    assert after is not None
     for old, new in ((HAIR, "#c9c4ba"), (TEAL, "#7d1b34")):
         had = np.linalg.norm(before[:, :3] - linear(old), axis=1) < 0.01
         assert had.sum() > 500
@@ -38,6 +40,7 @@ def test_a_mesh_without_colours_of_its_own_has_that_of_its_material(human):
     mesh = replace(human.meshes[0], colors=None, material=Material((*linear(TEAL), 1.0)))
     stranger = replace(human, meshes=(mesh,))
     (dressed,) = with_colours(stranger, {TEAL: "#7d1b34"}).meshes
+    assert dressed.colors is not None
     shown = dressed.colors[:, :3] * np.array(dressed.material.base_color[:3])
     assert np.allclose(shown, linear("#7d1b34"), atol=1e-5)
 
