@@ -27,7 +27,7 @@ BUNDLED = {
     "sketch:Sketch": "the cube draws a path of up to eight points, and the character walks it",
     "companion:Companion": "Vleo kisses or shouts, and changes the robot's mood",
     "reach.scenario:Reach": "the character reaches for the cube, and brings small things to it",
-    "talk:Talk": "Vleo talks with you about dinosaurs and feelings: type in the window",
+    "talk:Talk": "Vleo talks with you about dinosaurs and feelings: type what you say",
 }
 """The bundled scenarios; a new one is registered here. Each is the module in `app.scenarios`, whose
 first part gives the scenario its name, with its class; then comes what it is, for the help of the

@@ -39,6 +39,7 @@ class Said(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         "snapshot",
         "record",
         "mark",
+        "type",
         "answer",
         "done",
     ]
@@ -49,7 +50,8 @@ class Said(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Number of the picture that was shown, or of what is answered."""
 
     name: str = ""
-    """The camera ("ab12-back"), the scenario, or the answer."""
+    """The camera ("ab12-back"), the scenario, the answer, or what is typed for the character: "" as
+    that begins."""
 
     mirror: bool = False
     """Whether the picture of its camera is to be as in a mirror."""

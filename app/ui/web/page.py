@@ -17,8 +17,8 @@ HTML = "text/html; charset=utf-8"
 MAX_PAGE_BYTES = 30_000
 """Size of a page [B]: it is there at once on any network."""
 
-FOR_PEOPLE = re.compile(r"^\s+|^(//.*|/\*[^*]*\*/)\n", re.MULTILINE)
-"""What a browser does not need: indents, and lines that are comments."""
+FOR_PEOPLE = re.compile(r"^\s+|^(//.*|/\*[^*]*\*/)\n| // .*$", re.MULTILINE)
+"""What a browser does not need: indents and comments."""
 
 PLACED = re.compile(r"\{\{(\w+)(?:: ([\w ]+))?\}\}")
 """Where HTML has a word of the page's language, or icons: {{picture}}, {{icons: go again}}."""

@@ -22,6 +22,7 @@ from cubeling.app.ui.notice import Notice
 from cubeling.app.ui.playback.requests import Choose, MarkMoment, Record, SessionRequest
 from cubeling.app.ui.playback.snapshot import keep_snapshot
 from cubeling.app.ui.playback.status import SessionStatus
+from cubeling.app.ui.playback.typing_field import MAX_TYPED
 from cubeling.app.ui.web.client import CARDS
 from cubeling.app.ui.web.language import LANGUAGES, English, in_language
 from cubeling.app.ui.web.messages import Said
@@ -178,6 +179,7 @@ class WebScreen:
             "scenario": status.scenario,
             "recording": status.recording,
             "title": English(status.scenario),
+            "listens": status.listens,
             "notice": None if notice is None else [English(notice.title), English(notice.advice)],
             "offer": self._offer,
             "hint": English("" if self._shown is None else self._shown[0].outcome.hint),
@@ -205,6 +207,13 @@ class WebScreen:
             self.notify(keep_snapshot(self._folder, self._status.scenario, picture, datetime.now()))
         return ()
 
+    def _type(self, said: Said) -> tuple[SessionRequest, ...]:
+        if self._status.listens:
+            printed = "".join(each if each.isprintable() else " " for each in said.name[:MAX_TYPED])
+            text = " ".join(f"{self._inputs.typed} {printed}".split())
+            self._inputs = replace(self._inputs, typed=text, hush=True)
+        return ()
+
     def _mirror(self, said: Said) -> tuple[SessionRequest, ...]:
         self._mirrored = said.mirror
         return ()
@@ -224,6 +233,7 @@ HANDLERS: Mapping[str, Handler] = {
     "camera": WebScreen._mirror,
     "record": lambda screen, said: (Record(),),
     "mark": lambda screen, said: (MarkMoment(),),
+    "type": WebScreen._type,
 }
 """What carries out each request of a page."""
 

@@ -65,6 +65,16 @@ $("offer").onclick = () => {
   $("offer").hidden = true;
 };
 
+/* What is typed is said to a character that listens; it falls silent as soon as that begins. */
+const line = $("talk").firstElementChild;
+line.oninput = () => line.value.length === 1 && say({do: "type"});
+$("talk").onsubmit = event => {
+  event.preventDefault();
+  if (line.value.trim()) say({do: "type", name: line.value});
+  line.value = "";
+};
+parts.push(() => { $("talk").hidden = !playing || role === "camera" || !session.listens; });
+
 /* What this page is: camera, screen or both. */
 const roles = {};
 for (const each of ["play", "window", "camera"]) {

@@ -123,6 +123,26 @@ def test_a_second_phone_is_a_screen_and_each_may_become_the_camera(desk):
     desk.use(use())
 
 
+def test_what_is_typed_on_the_page_is_said_to_the_character(desk):
+    async def use():
+        tab = await desk.browser.tab()
+        await play(tab, desk.served.address)
+        assert await tab.run("$('talk').hidden"), "nobody listens in companion"
+        await tab.run("say({do: 'play', name: 'talk'})")
+        await tab.until("!$('talk').hidden", 60.0)
+        await tab.run("line.focus()")
+        await tab.call("Input.insertText", text="¿Qué comes?")
+        await tab.run("$('talk').requestSubmit()")
+        await tab.until("session.hint.words.includes('¿Qué comes?')", 60.0)
+        assert await tab.run("line.value") == ""
+        await tab.run("say({do: 'play', name: 'companion'})")
+        await tab.until("$('talk').hidden", 60.0)
+        assert not errors(tab)
+        await tab.call("Page.close")
+
+    desk.use(use())
+
+
 def test_the_sound_of_the_session_is_heard_in_the_browser(desk):
     async def use():
         tab = await desk.browser.tab()

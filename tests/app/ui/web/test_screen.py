@@ -89,6 +89,24 @@ def test_what_is_touched_reaches_the_scenario_and_the_session(desk):
     assert desk.screen.show(step_of(picture), ROBOT) == Inputs()
 
 
+def test_what_is_typed_is_said_where_somebody_listens(desk):
+    picture = np.zeros((8, 8, 3), np.uint8)
+    desk.pages.asked = ['{"do":"type","name":"Hello"}']
+    assert desk.screen.take_requests() == ()
+    assert desk.screen.show(step_of(picture), ROBOT) == Inputs(), (
+        "a recording holds what has effect"
+    )
+    desk.screen.report(SessionStatus(listens=True))
+    desk.pages.asked = [
+        '{"do":"type"}',
+        '{"do":"type","name":" Do\\nyou "}',
+        '{"do":"type","name":"sing?"}',
+    ]
+    assert desk.screen.take_requests() == ()
+    assert desk.screen.show(step_of(picture), ROBOT) == Inputs(typed="Do you sing?", hush=True)
+    assert desk.pages.statuses[-1]["listens"]
+
+
 def test_another_camera_is_asked_for_until_the_session_has_it(desk):
     desk.screen.report(SessionStatus(source="phone:ab?size=720x1280"))
     assert desk.screen.take_requests() == ()
@@ -142,5 +160,5 @@ def test_pages_are_told_that_nothing_has_changed_twice_a_second_only(desk):
     desk.screen.report(SessionStatus(scenario="follow", recording=1.5))
     assert desk.pages.statuses[-1] == {
         "scenario": "follow", "title": "follow", "recording": 1.5, "notice": None, "offer": "",
-        "hint": "",
+        "hint": "", "listens": False,
     }  # fmt: skip
