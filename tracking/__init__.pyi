@@ -20,7 +20,10 @@ from cubeling.tracking.cube.model import (
 from cubeling.tracking.cube.printing.sheet import write_sheet as write_sheet
 from cubeling.tracking.detection.markers import MarkerDetector as MarkerDetector
 from cubeling.tracking.detection.recognition import CubeRecognizer as CubeRecognizer
-from cubeling.tracking.errors import TrackingError as TrackingError
+from cubeling.tracking.errors import (
+    NoCameraError as NoCameraError,
+    TrackingError as TrackingError,
+)
 from cubeling.tracking.geometry import se3 as se3
 from cubeling.tracking.geometry.frame import Frame as Frame
 from cubeling.tracking.geometry.intrinsics import Intrinsics as Intrinsics

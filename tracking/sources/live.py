@@ -6,7 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 
-from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.errors import NoCameraError, TrackingError
 from cubeling.tracking.geometry.arrays import Image
 from cubeling.tracking.geometry.frame import Frame
 from cubeling.tracking.sources.base import FrameSource, Timeline
@@ -155,19 +155,19 @@ class LiveSource(FrameSource):
                 return frame
             now, capture = self._clock(), self._capture
             if capture.failed_to_open:
-                raise TrackingError(capture.problem)
+                raise NoCameraError(capture.problem)
             since = self._unusable_since
             if since is not None and now - since >= FIRST_IMAGE_TIMEOUT_S:
-                raise TrackingError(self._unusable_text)
+                raise NoCameraError(self._unusable_text)
             if capture.delivered:
                 continue
             waited = now - capture.last_arrival
             if capture.opening and waited >= OPEN_TIMEOUT_S:
-                raise TrackingError(
+                raise NoCameraError(
                     f"{self._name} did not open within {OPEN_TIMEOUT_S:g} s: plug it in again"
                 )
             if not capture.opening and waited >= FIRST_IMAGE_TIMEOUT_S:
-                raise TrackingError(self._silence_text(FIRST_IMAGE_TIMEOUT_S))
+                raise NoCameraError(self._silence_text(FIRST_IMAGE_TIMEOUT_S))
 
     def _next(self, timeout: float) -> Frame | None:
         began = self._clock()

@@ -9,6 +9,9 @@ from tempfile import TemporaryDirectory
 import typer
 from rich.console import Console
 
+SHORT_S = 3.0
+"""Sessions up to this length are computed without a word [s]."""
+
 
 @contextmanager
 def complete_session(
@@ -38,12 +41,13 @@ def complete_session(
     from cubeling.app.commands.play.progress import show_progress
     from cubeling.app.running.computing import compute_channels
 
-    kept = f"cubeling replay {shlex.quote(str(path))} --no-pictures --record FULL.mcap"
-    typer.echo(
-        f"{path.name} holds only what came in: computing the rest, for about as long as it lasts "
-        f"({info.duration:.0f} s). To do so once: {kept}",
-        err=True,
-    )
+    if info.duration > SHORT_S:
+        kept = f"cubeling replay {shlex.quote(str(path))} --no-pictures --record FULL.mcap"
+        typer.echo(
+            f"{path.name} holds only what came in: computing the rest, for about as long as it "
+            f"lasts ({info.duration:.0f} s). To do so once: {kept}",
+            err=True,
+        )
     with TemporaryDirectory(prefix="cubeling-") as folder:
         complete = Path(folder) / f"{path.stem}.mcap"
         with show_progress(

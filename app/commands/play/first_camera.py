@@ -1,6 +1,7 @@
 """The first camera of the computer, and what is shown where there is none."""
 
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -30,13 +31,14 @@ def way_without_camera(scenario: str) -> str:
     return f"cubeling play {scenario} --source synthetic:{moves}"
 
 
-def open_needed_camera(closing: ExitStack, scenario: str) -> "FrameSource":
-    """Open the first camera; without one, raise AppError that says how to play without it."""
-    from cubeling.tracking import TrackingError, open_source
+@contextmanager
+def saying_how_without(scenario: str) -> Iterator[None]:
+    """Say how to play a scenario without a camera, in an AppError, where there is none."""
+    from cubeling.tracking import NoCameraError
 
     try:
-        return closing.enter_context(open_source(DEFAULT_CAMERA))
-    except TrackingError as error:
+        yield
+    except NoCameraError as error:
         raise AppError(f"{error}; without a camera: {way_without_camera(scenario)}") from error
 
 

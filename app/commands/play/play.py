@@ -1,6 +1,5 @@
 """The command `cubeling play`."""
 
-from contextlib import ExitStack
 from typing import Annotated
 
 import typer
@@ -14,7 +13,7 @@ from cubeling.app.commands.character_options import (
     profile_of,
 )
 from cubeling.app.commands.output import OverwriteOption
-from cubeling.app.commands.play.first_camera import open_needed_camera
+from cubeling.app.commands.play.first_camera import saying_how_without
 from cubeling.app.commands.play.instrument_options import GivenInstruments, with_instruments
 from cubeling.app.commands.play.play_options import (
     ALL_REALISM,
@@ -204,14 +203,5 @@ def play(
         raise AppError(
             "there is no display here: write a video with --output FILE.mp4, or add --no-pictures"
         )
-    with instruments.open() as opened, ExitStack() as closing:
-        camera = None
-        if options.source == DEFAULT_CAMERA:
-            camera = open_needed_camera(closing, scenario)
-        play_session(
-            options,
-            f"playing {scenario}",
-            source=camera,
-            instruments=opened,
-            preferences=kept,
-        )
+    with saying_how_without(scenario), instruments.open() as opened:
+        play_session(options, f"playing {scenario}", instruments=opened, preferences=kept)

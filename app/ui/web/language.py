@@ -20,7 +20,7 @@ SENTENCE_END = re.compile(r"(?<=[.!?:]) ")
 
 
 @dataclass(frozen=True)
-class Words:
+class PageWords:
     """Some words for a page."""
 
     words: str
@@ -41,14 +41,14 @@ def language_of(accepted: str) -> str:
 
 
 class English(str):
-    """Words in English in a message: each page gets them in its language, as `Words`."""
+    """Words in English in a message: each page gets them in its language, as `PageWords`."""
 
 
-def in_language(text: str, language: str) -> Words:
+def in_language(text: str, language: str) -> PageWords:
     """Return what the session says in English, in a language; else as it is, of unknown language.
 
     >>> in_language("Playing follow", "es")
-    Words(words='Jugamos a: Seguir', language='es')
+    PageWords(words='Jugamos a: Seguir', language='es')
     >>> in_language("So far! Move the cube a little", "es").words
     '¡Qué lejos! Mueve un poco el cubo'
     >>> in_language("What only somebody's own scenario says", "es").language
@@ -56,12 +56,12 @@ def in_language(text: str, language: str) -> Words:
     """
     spanish = _whole(text) or _in_parts(text)
     if spanish is None:
-        return Words(text, "")
-    return Words(spanish if language == "es" else text, language)
+        return PageWords(text, "")
+    return PageWords(spanish if language == "es" else text, language)
 
 
 def localized(content: object, language: str) -> object:
-    """Return the content of a message for a page: whatever is `English` becomes `Words`."""
+    """Return the content of a message for a page: whatever is `English` becomes `PageWords`."""
     if isinstance(content, English):
         return in_language(str(content), language)
     if isinstance(content, dict):

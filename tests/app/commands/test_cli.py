@@ -14,7 +14,7 @@ from cubeling.app.cli import COMMANDS, load_command
 from cubeling.app.workshop.scenario_templates import RULES
 from cubeling.characters import Character, CharacterError, rendering
 from cubeling.characters.errors import CharacterWarning
-from cubeling.tracking import TrackingError
+from cubeling.tracking import NoCameraError, TrackingError
 from tests.characters.formats.built_gltf import Builder
 
 COMMANDS_WITH_EXAMPLES = [
@@ -255,9 +255,9 @@ def test_bad_input_is_one_line_and_exit_code_2(cubeling, case, bundled_session):
 )
 def test_who_has_no_camera_is_told_how_to_play_without(cubeling, monkeypatch, scenario, way):
     def refuse(uri):
-        raise TrackingError(f"{uri} does not exist")
+        raise NoCameraError(f"{uri} does not exist")
 
-    monkeypatch.setattr("cubeling.tracking.open_source", refuse)
+    monkeypatch.setattr("cubeling.app.running.opening.open_source", refuse)
     Path("hello.toml").write_text(RULES)
     code, _, err = cubeling("play", scenario, "--no-pictures")
     assert code == 2

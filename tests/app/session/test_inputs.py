@@ -89,7 +89,8 @@ def test_a_session_with_inputs_of_every_kind_replays_bit_for_bit(full):
 
 
 @pytest.mark.slow(reason="a session is computed again")
-def test_from_what_came_in_the_same_session_is_computed(full, tmp_path, capsys):
+def test_from_what_came_in_the_same_session_is_computed(full, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("cubeling.app.commands.play.complete.SHORT_S", 0.0)
     bare = tmp_path / "full.mcap"
     keep_inputs(full, bare)
     assert {topic for topic, _, _ in messages(bare)} == set(INPUT_TOPICS)

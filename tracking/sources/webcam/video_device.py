@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 import cv2
 
-from cubeling.tracking.errors import TrackingError
+from cubeling.tracking.errors import NoCameraError
 
 BACKENDS = {"linux": cv2.CAP_V4L2, "win32": cv2.CAP_DSHOW, "darwin": cv2.CAP_AVFOUNDATION}
 """OpenCV's backend on each system: trying all of them takes seconds and prints warnings, and Media
@@ -52,7 +52,7 @@ def check_present(device: int | str, path: Path) -> None:
 
     Raises
     ------
-    TrackingError
+    NoCameraError
         There is no such camera, or this user may not open it.
     """
     if sys.platform != "linux":
@@ -64,9 +64,9 @@ def check_present(device: int | str, path: Path) -> None:
             if others
             else "no camera is connected; --source FILE takes a video or a recording"
         )
-        raise TrackingError(f"camera {device} does not exist ({path}): {there}")
+        raise NoCameraError(f"camera {device} does not exist ({path}): {there}")
     if not os.access(path, os.R_OK | os.W_OK):
-        raise TrackingError(
+        raise NoCameraError(
             f"no permission to open camera {device}: run 'sudo usermod -aG video $USER', "
             "then log out and in again"
         )
