@@ -68,7 +68,8 @@ def play_session(
             if options.intrinsics is None and session.source.intrinsics is None:
                 _say_lens(session, console)
                 at_end.callback(_keep_lens, session, console)
-            summary = run_with_progress(session, console, title)
+            open_ended = typed is not None or until_over
+            summary = run_with_progress(session, console, title, open_ended=open_ended)
         console.print(summary)
         if options.output is not None:
             report_output(options.output, summary, console)
@@ -162,11 +163,16 @@ def report_recording(path: Path, console: Console) -> None:
     )
 
 
-def run_with_progress(session: OpenedSession, console: Console, title: str) -> Summary:
-    """Run a session and show its progress; raise KeyboardInterrupt if no picture came before it."""
+def run_with_progress(
+    session: OpenedSession, console: Console, title: str, *, open_ended: bool
+) -> Summary:
+    """Run a session and show its progress; raise KeyboardInterrupt if no picture came before it.
+
+    One that is open-ended is over before its source is.
+    """
     lens_line, sound_line = _LensLine(session, console), _SoundLine(session, console)
     hop_line = _HopLine(session, console)
-    with _progress(session, console, title) as report:
+    with _progress(session, console, title, open_ended) as report:
 
         def progress(step: Step) -> None:
             report(step)
@@ -184,10 +190,10 @@ def run_with_progress(session: OpenedSession, console: Console, title: str) -> S
 
 @contextmanager
 def _progress(
-    session: OpenedSession, console: Console, title: str
+    session: OpenedSession, console: Console, title: str, open_ended: bool
 ) -> Iterator[Callable[[Step], None]]:
     """Show the progress of a session, except next to a window."""
-    duration = session.source.duration
+    duration = None if open_ended else session.source.duration
     if duration is not None and session.options.end_s is not None:
         duration = min(duration, session.options.end_s)
     if session.options.windowed:
@@ -264,7 +270,7 @@ class ProgressLines:
     def _state(self, elapsed: float, taken: float) -> str:
         """Return how far the session is [s], and how long the rest will take."""
         if not self._duration or elapsed <= 0.0:
-            return f"frame {self._frames}, {elapsed:.0f} s"
+            return f"frame {self._frames}, {elapsed:.0f} s so far"
         share = min(1.0, elapsed / self._duration)
         left = taken * (1.0 - share) / share
         return f"{100 * share:.0f} %, frame {self._frames}, about {left:.0f} s left"

@@ -227,6 +227,8 @@ def replay(
             result = check_session(file, options, progress)
             Console().print(result)
             raise typer.Exit(0 if result.identical else 1)
+        if pictures and not options.pictures:
+            typer.echo("No window: there is no display here; -o FILE.mp4 writes a video", err=True)
         options, kept = preferences.open(replace(options, source=str(file.path)))
         play_session(
             options,

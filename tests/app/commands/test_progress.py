@@ -145,8 +145,8 @@ def test_lines_of_progress_come_every_few_seconds_with_the_time_left(a_step, cap
             unknown(step)
     expected = [f"rendering: {k * 100 / 12:.0f} %" for k in range(1, 7)]
     shown = capsys.readouterr().err.splitlines()
-    assert "recording: frame 1, 0 s" in shown
-    shown.remove("recording: frame 1, 0 s")
+    assert "recording: frame 1, 0 s so far" in shown
+    shown.remove("recording: frame 1, 0 s so far")
     assert [line.split(",")[0] for line in shown] == expected
     assert shown[0] == "rendering: 8 %, frame 51, about 55 s left"
 
@@ -182,3 +182,23 @@ def test_a_recording_that_ends_with_an_error_says_what_was_kept(
     assert "No space left" in err
     assert "Recorded to r.mcap: 0.6 s, 20 frames" in out
     assert session_info(Path("r.mcap")).frames == 20
+
+
+def test_progress_of_a_session_that_ends_before_its_source_names_no_end(
+    short_session, monkeypatch, capsys
+):
+    monkeypatch.setattr(progress, "LINE_INTERVAL_S", 0.0)
+    options = SessionOptions(
+        scenario="companion", source=str(short_session), robot="none", pictures=False
+    )
+    progress.play_session(options, "talking", typed=["hello"])
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == SHORT_FRAMES
+    for line in lines:
+        assert re.fullmatch(r"talking: frame \d+, \d s so far", line)
+
+
+def test_a_replay_says_why_no_window_opens(cubeling, short_session):
+    told = "No window: there is no display here; -o FILE.mp4 writes a video\n"
+    assert cubeling("replay", short_session)[::2] == (0, told)
+    assert cubeling("replay", short_session, "--no-pictures")[::2] == (0, "")

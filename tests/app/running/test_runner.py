@@ -84,7 +84,7 @@ def test_a_real_robot_gets_a_recording_in_real_time(
     with SimulatedPort() as port:
         url = port.url if robot == "real" else robot
         options = ["--robot", url, *(["--fast"] if fast else [])]
-        code, _, err = cubeling("replay", short_session, *options)
+        code, _, err = cubeling("replay", short_session, "--no-pictures", *options)
     assert (code, err) == (0, "")
     assert virtual.now == pytest.approx(seconds, abs=0.1)
 
