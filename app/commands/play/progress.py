@@ -164,7 +164,7 @@ def report_recording(path: Path, console: Console) -> None:
 
 
 def run_with_progress(
-    session: OpenedSession, console: Console, title: str, *, open_ended: bool
+    session: OpenedSession, console: Console, title: str, *, open_ended: bool = False
 ) -> Summary:
     """Run a session and show its progress; raise KeyboardInterrupt if no picture came before it.
 
