@@ -12,7 +12,7 @@ from cubeling.characters.model.character import Character
 from cubeling.characters.model.mesh import Mesh
 from cubeling.characters.skeleton.pose import Array
 
-ALIKE = 0.012
+MAX_COLOUR_DISTANCE = 0.012
 """Largest distance of a linear colour from one that is exchanged: written in two digits a channel
 it is at most 0.008 off, and the human's iris is 0.02 from its hair."""
 
@@ -54,7 +54,7 @@ def with_colours(character: Character, exchanged: Mapping[str, str]) -> Characte
         colours = np.ones((len(mesh.positions), 4)) if mesh.colors is None else mesh.colors
         shown, new = colours[:, :3] * base, np.array(colours, np.float32)
         for old, other in exchanged.items():
-            alike = np.linalg.norm(shown - _linear(old), axis=1) < ALIKE
+            alike = np.linalg.norm(shown - _linear(old), axis=1) < MAX_COLOUR_DISTANCE
             if alike.any():
                 missing.discard(old)
                 new[alike, :3] = _linear(other) / np.maximum(base, 1e-6)

@@ -19,11 +19,11 @@ GROUND, LINE = 176.0, 158.0
 SQUARE_M, LINES = 0.05, 21
 """Side of the squares between the lines [m], and the number of lines each way from the middle."""
 
-FADES = 6
+FADE_STEPS = 6
 """Steps in which the lines fade towards their ends."""
 
-MARGIN = 1.2
-"""How far beyond the picture's edge the lines are drawn, as a share of the way there."""
+LINES_REACH = 1.2
+"""How far out the lines are drawn, as a multiple of the way to the picture's edge."""
 
 CUBE_SAMPLES = 2
 """The cube is drawn by the square of so many rays for each pixel."""
@@ -90,7 +90,7 @@ class PlainRoom:
 
     def _begin(self) -> None:
         # A lens bends what is far outside of the picture back into it.
-        self._reach = MARGIN * np.abs(self._camera.rays(self._camera.whole(), 1)).max((0, 1))
+        self._reach = LINES_REACH * np.abs(self._camera.rays(self._camera.whole(), 1)).max((0, 1))
         self._table = None
         self._ground = self._draw_ground(None)
 
@@ -107,8 +107,8 @@ class PlainRoom:
             kept = seen.reshape(len(pieces), -1).all(axis=1)
             pixels = self._camera.pixels(in_camera[np.repeat(kept, 2)]).reshape(-1, 2, 2)
             thickness = max(1, round(height / 540))
-            for step in range(FADES):
-                level = LINE + (GROUND - LINE) * step / FADES
+            for step in range(FADE_STEPS):
+                level = LINE + (GROUND - LINE) * step / FADE_STEPS
                 points = np.round(pixels[ends[kept] == step] * 16).astype(np.int32)
                 cv2.polylines(canvas, list(points), False, (level,) * 3, thickness, cv2.LINE_AA, 4)
         return canvas.astype(np.float32)
@@ -126,4 +126,4 @@ def _line_pieces() -> tuple[Array, Array]:
     pieces = np.stack([starts, starts + (SQUARE_M, 0.0, 0.0)], axis=1)
     pieces = np.concatenate([pieces, pieces[:, :, ::-1]])
     reach = np.linalg.norm(pieces.mean(axis=1), axis=1) / (LINES * SQUARE_M)
-    return pieces, np.floor(np.clip(reach, 0.0, 1.0) * FADES)
+    return pieces, np.floor(np.clip(reach, 0.0, 1.0) * FADE_STEPS)

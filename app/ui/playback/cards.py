@@ -37,7 +37,7 @@ WORDS_GAP = 16.0
 HINTED_WIDER = 1.04
 """Small letters are hinted: lines of them are up to so much wider than `text_width` says."""
 
-EDGE = 10.0
+LARGE_CARD_MARGIN = 10.0
 """Least distance of a large card from the edges of the picture."""
 
 
@@ -52,7 +52,9 @@ def centre(size: tuple[float, float], width: float) -> tuple[float, float, float
     (10.0, 235.0, 0.5)
     """
     wide, high = size
-    scale = min(1.0, (width - 2 * EDGE) / wide, (PICTURE_HEIGHT - 2 * EDGE) / high)
+    scale = min(
+        1.0, (width - 2 * LARGE_CARD_MARGIN) / wide, (PICTURE_HEIGHT - 2 * LARGE_CARD_MARGIN) / high
+    )
     return (width - scale * wide) / 2, (PICTURE_HEIGHT - scale * high) / 2, scale
 
 
@@ -207,7 +209,7 @@ def _arrow(canvas: Canvas, x: float, y: float, side: int) -> None:
 @lru_cache(maxsize=4)
 def draw_ending(ending: EndCard, keys: str, width: float, scale: float) -> Card:
     """Return the card at the end of a recording; `keys` says what closes it, or is empty."""
-    room = max(360.0, width - 2 * EDGE) - 100
+    room = max(360.0, width - 2 * LARGE_CARD_MARGIN) - 100
     lines = [(words, wrap_text(command, room, 22)) for words, command in ending.lines]
     texts = [ending.title, *(text for words, command in lines for text in (words, *command)), keys]
     card_width = max(360.0, *(text_width(each, 22) + 100 for each in texts))

@@ -14,7 +14,7 @@ from cubeling.app.errors import AppError
 from cubeling.app.pipeline.registry import scenario_summary
 from cubeling.app.ui.canvas import Canvas, Card, text_width, wrap_text
 from cubeling.app.ui.palette import INK, PAPER, QUIET, RULE, between
-from cubeling.app.ui.playback.cards import ACCENT, EDGE, centre, large_card
+from cubeling.app.ui.playback.cards import ACCENT, LARGE_CARD_MARGIN, centre, large_card
 
 TITLE = "What would you like to play?"
 HELP = "Press a number, or click  ·  Esc closes  ·  0 brings it back"
@@ -75,7 +75,7 @@ class _Layout:
     def of(cls, scenarios: tuple[str, ...], width: float) -> "_Layout":
         count = len(scenarios)
         columns = 2 if count <= FEW else 3
-        room = (width - 2 * EDGE - 2 * SIDE - (columns - 1) * GAP) / columns
+        room = (width - 2 * LARGE_CARD_MARGIN - 2 * SIDE - (columns - 1) * GAP) / columns
         tile = min(WIDE_TILE if count <= FEW else TILE, room)
         return cls(tile, columns, tuple(_summary_lines(each, tile - 8) for each in scenarios))
 

@@ -20,7 +20,7 @@ from cubeling.tracking import Frame, open_source
 THUMBNAILS, THUMBNAIL_WIDTH_PX = 8, 320
 """Pictures of a page, and their width [px]."""
 
-RESOLVED = ("character", "personality")
+WHO_PLAYED = ("character", "personality")
 """What is said of who played, of the keys of `SessionFigures.played`."""
 
 MAX_LISTED = 8
@@ -31,7 +31,7 @@ def lines_of(figures: SessionFigures) -> list[tuple[str, str]]:
     """Return what there is to say about a session: a word, and a line."""
     info, link = figures.info, figures.link
     labels = ", ".join(filter(None, (info.labels.participant, info.labels.condition)))
-    who = [f"{key} {figures.played[key]}" for key in RESOLVED if figures.played.get(key)]
+    who = [f"{key} {figures.played[key]}" for key in WHO_PLAYED if figures.played.get(key)]
     rows = [
         ("session", f"{figures.name}, {_size_line(figures)}"),
         ("played", ", ".join([info.options.scenario, *who])),

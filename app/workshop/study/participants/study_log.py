@@ -129,8 +129,8 @@ class StudyFolder:
     Parameters
     ----------
     path
-        Its folder, which is made for a new study, but not the one that it is in. One in which
-        nobody has begun is made anew.
+        Its folder, which is made for a new study, but not the one that it is in. It is
+        replaced as long as nobody has begun.
     protocol, source
         Its protocol, and the file of that.
     kind
